@@ -1,6 +1,7 @@
 #include <analysis/search.hpp>
 #include <core/contract.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::analysis {
@@ -70,6 +71,37 @@ double find_crossing(double a, double fa, double b, double fb, double tolerance,
     fb = fx;
   }
   return b;
+}
+
+namespace {
+
+/// The lowest sample that is reached downhill.
+double valley(const std::vector<double>& samples, std::size_t from, bool towards_the_end) {
+  std::size_t k = from;
+  if (towards_the_end)
+    while (k + 1 < samples.size() && samples[k + 1] <= samples[k])
+      ++k;
+  else
+    while (k > 0 && samples[k - 1] <= samples[k])
+      --k;
+  return samples[k];
+}
+
+}  // namespace
+
+std::vector<std::size_t> maxima_of(const std::vector<double>& samples) {
+  constexpr double of_itself = 1e-7, of_the_largest = 1e-14;
+  double largest = 0;
+  for (const double f : samples)
+    largest = std::max(largest, std::abs(f));
+  std::vector<std::size_t> out;
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    const double here = samples[i];
+    if (!(here > samples[i - 1] && here >= samples[i + 1])) continue;
+    const double foot = std::max(valley(samples, i, false), valley(samples, i, true));
+    if (here - foot >= of_itself * std::abs(here) + of_the_largest * largest) out.push_back(i);
+  }
+  return out;
 }
 
 }  // namespace whirl::analysis

@@ -1,6 +1,7 @@
 // Maxima and zeros of smooth scalar functions.
 #pragma once
 #include <functional>
+#include <vector>
 
 namespace whirl::analysis {
 
@@ -10,6 +11,11 @@ namespace whirl::analysis {
 /// @pre m between a and b, tolerance > 0.
 double find_maximum(double a, double m, double fm, double b, double tolerance,
                     const std::function<double(double)>& f);
+
+/// Numbers of the samples that are maxima: higher than what lies beside them, and by more than
+/// rounding than the valleys on both sides. How close the samples are makes no difference. Neither
+/// end is one.
+std::vector<std::size_t> maxima_of(const std::vector<double>& samples);
 
 /// Zero of f in [a, b] with a sign change, by the Illinois variant of regula falsi.
 /// @pre fa and fb of different sign or zero, tolerance > 0.

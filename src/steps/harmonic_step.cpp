@@ -2,11 +2,14 @@
 // at an order of the speed.
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/search.hpp>
+#include <analysis/spectra/critical.hpp>
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/refined_response.hpp>
 #include <run/progress.hpp>
+#include <steps/criticals_between.hpp>
+#include <steps/resonances.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/parallel.hpp>
 #include <core/rotation.hpp>
@@ -147,6 +150,10 @@ class HarmonicRun {
   FrequencyPoint respond(double x) { return respond(responder_, x); }
   FrequencyPoint respond(Responder& responder, double x) const;
   double speed_at(double x) const { return asynchronous_ ? law_.speed : x; }
+  /// Resonances and places about them, so that no peak is too sharp for the grid. Sorted into it.
+  void add_resonances();
+  std::vector<double> resonances_by_frequency();
+  std::vector<double> resonances_by_speed();
   void solve_grid();
   /// Points first .. last - 1 of the grid on a linearisation of their own. equilibria: theirs, or
   /// empty where all stand at one speed.
@@ -191,7 +198,7 @@ class HarmonicRun {
   run::Job& job_;
   const model::HarmonicStep& law_;
   const bool asynchronous_;
-  const std::vector<double> grid_;
+  std::vector<double> grid_;
   const double top_;  ///< highest |speed|, rad/s
   results::FrequencyStep s_;
   results::GapCheck gaps_;
@@ -246,6 +253,52 @@ void HarmonicRun::solve_points(std::size_t first, std::size_t last,
     points_[k] = respond(responder, grid_[k]);
     torques_[k] = line_torques(s_, linear.at(points_[k].Omega), points_[k].shape);
   }
+}
+
+/// Where nothing damps, the response at the resonance itself is rounding.
+bool is_damped(const analysis::WhirlMode& m) { return std::abs(m.damping_ratio) > 1e-7; }
+
+std::vector<double> HarmonicRun::resonances_by_frequency() {
+  analysis::ModesOptions o;
+  o.count = 0;
+  o.max_frequency = grid_.back();
+  o.motion = results::motion_of(law_.motion);
+  o.certify = false;
+  o.continued = true;
+  std::vector<double> out;
+  for (const analysis::WhirlMode& m : analysis::whirl_modes(s_.linear, law_.speed, o)) {
+    if (!is_damped(m)) continue;
+    add_places_about(m.frequency, m.damping_ratio, out);
+    // coefficients of a frequency leave the decay out: the resonance may be much sharper
+    if (m.continued != m.lambda)
+      add_places_about(std::abs(m.continued.imag()),
+                       std::abs(m.continued.real()) / std::abs(m.continued), out);
+  }
+  return out;
+}
+
+std::vector<double> HarmonicRun::resonances_by_speed() {
+  analysis::CriticalOptions o;
+  o.order = law_.order;
+  o.damped = true;
+  o.motion = results::motion_of(law_.motion);
+  o.certify = false;
+  o.grid = 16;
+  o.threads = job_.options.jobs;
+  std::vector<double> out;
+  for (const analysis::Critical& c : criticals_between(s_, o, grid_.front(), grid_.back()))
+    if (is_damped(c.mode)) add_places_about(c.speed, c.mode.damping_ratio, out);
+  return out;
+}
+
+void HarmonicRun::add_resonances() {
+  const bool range = asynchronous_ ? law_.frequency->values.empty() : law_.speeds->refine_peaks;
+  if (!range || !(grid_.front() < grid_.back())) return;
+  const run::PhaseTimer timer(job_, asynchronous_ ? "natural frequencies" : "critical speeds");
+  const double low = grid_.front(), high = grid_.back();
+  for (const double x : asynchronous_ ? resonances_by_frequency() : resonances_by_speed())
+    if (x > low && x < high) grid_.push_back(x);
+  sort_apart(grid_);
 }
 
 // Equilibria one after the other, responses side by side. What a thread gets at a time depends on
@@ -441,15 +494,11 @@ double HarmonicRun::largest_of(std::size_t probe) const {
 }
 
 void HarmonicRun::list_maxima(std::size_t probe, std::vector<Found>& out) const {
-  const double most = largest_of(probe);
-  for (std::size_t k = 1; k + 1 < points_.size(); ++k) {
-    const double before = size_of(points_[k - 1], probe), here = size_of(points_[k], probe),
-                 after = size_of(points_[k + 1], probe);
-    const bool rises = here > before && here >= after;
-    if (!rises || here - std::min(before, after) < 1e-7 * most)
-      continue;  // a peak of rounding is none
+  std::vector<double> sizes;
+  for (const FrequencyPoint& x : points_)
+    sizes.push_back(size_of(x, probe));
+  for (const std::size_t k : analysis::maxima_of(sizes))
     out.push_back({probe, k, 0.0, {}});
-  }
 }
 
 void HarmonicRun::find_peak(Found& x) const {
@@ -567,6 +616,7 @@ void HarmonicRun::finish() {
 }
 
 void HarmonicRun::execute() {
+  add_resonances();
   solve_grid();
   find_largest();
   judge_mesh();

@@ -89,7 +89,11 @@ std::string finding(const analysis::StabilityResult& r) {
 
 /// What was found, and on what authority.
 std::string verdict_line(const analysis::StabilityResult& r) {
-  const std::string line = finding(r);
+  const bool doubted =
+      std::any_of(r.verdicts.begin(), r.verdicts.end(), [](const analysis::SpeedVerdict& v) {
+        return v.certificate.contradicted() && v.certificate.axis->unknown < 0 && !v.stable();
+      });
+  const std::string line = (doubted ? "growth in doubt: " : "") + finding(r);
   const analysis::SpectrumCertificate& c = weakest(r).certificate;
   if (r.certain() && c.axis)
     return line +

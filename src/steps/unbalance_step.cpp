@@ -10,6 +10,7 @@
 #include <results/refined_response.hpp>
 #include <run/progress.hpp>
 #include <steps/criticals_between.hpp>
+#include <steps/resonances.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/contract.hpp>
 #include <core/text.hpp>
@@ -204,16 +205,13 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     o.certify = false;
     o.grid = 16;
     o.threads = s.job.options.jobs;
+    std::vector<double> places;
     for (const analysis::Critical& c : criticals_between(s, o, low, high))
-      for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-        const double Omega = c.speed * (1.0 + x * c.mode.damping_ratio);
-        if (Omega > low && Omega < high) speeds.push_back(Omega);
-      }
+      add_places_about(c.speed, c.mode.damping_ratio, places);
+    for (const double Omega : places)
+      if (Omega > low && Omega < high) speeds.push_back(Omega);
   }
-  std::sort(speeds.begin(), speeds.end());
-  speeds.erase(std::unique(speeds.begin(), speeds.end(),
-                           [](double a, double b) { return b - a < 1e-7 * std::abs(b); }),
-               speeds.end());
+  sort_apart(speeds);
 }
 
 /// The same into the summary.
@@ -587,6 +585,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
     add_critical_speeds(s, o.speeds);
+    o.resolve = s.linear.running().running().frequency_dependent();
   }
   analysis::UnbalanceSolver solver(s.linear, o);
   const UnbalanceResponse r = [&] {

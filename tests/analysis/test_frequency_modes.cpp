@@ -1,5 +1,6 @@
 // All modes on supports whose coefficients depend on the frequency of the motion, against
 // references that do not use Whirl's solver.
+#include <analysis/response/unbalance.hpp>
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <analysis/spectra/stability.hpp>
@@ -625,4 +626,63 @@ TEST(FrequencyModes, RandomPedestalsInTablesLoseNoMode) {
     compared += expect_the_same_modes(m, top, rows, 100 * (k % 7));
   }
   EXPECT_GE(compared, 4 * machines);
+}
+
+namespace {
+
+/// Peaks of the response to an unbalance of the disk from 300 to 12000 rpm.
+std::vector<analysis::ResponsePeak> peaks_of(const std::string& deck, int speeds, bool resolve) {
+  const test::DeckModel d(deck + "[[unbalance]]\nat = \"d\"\namount = \"10 g.mm\"\n");
+  analysis::Linearizer linear(d.built.system, d.running());
+  analysis::UnbalanceOptions o;
+  for (int k = 0; k < speeds; ++k)
+    o.speeds.push_back(test::rpm * (300 + 11700.0 * k / (speeds - 1)));
+  o.probes.push_back({"disk", {d.disk(), 0.0}, {}});
+  o.resolve = resolve;
+  analysis::UnbalanceSolver solver(linear, o);
+  solver.run();
+  return solver.peaks();
+}
+
+}  // namespace
+
+// Peaks are narrower than the critical speeds on tables say, and stand between coarse speeds.
+TEST(FrequencyModes, PeaksOnPedestalsInTablesAreThoseOfThePedestals) {
+  std::mt19937 random(5);
+  std::size_t compared = 0;
+  for (int k = 0; k < 6; ++k) {
+    const PedestalMachine m = random_machine(random);
+    const auto wanted = peaks_of(m.with_masses(), 6000, false),
+               found = peaks_of(m.with_tables(two_pi * 250, 8000), 60, true);
+    SCOPED_TRACE(fmt::format("machine {}", k));
+    for (const analysis::ResponsePeak& p : wanted) {
+      const auto same =
+          std::min_element(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+            return std::abs(a.speed - p.speed) < std::abs(b.speed - p.speed);
+          });
+      ASSERT_NE(same, found.end());
+      EXPECT_NEAR(same->speed, p.speed, 2e-4 * p.speed);
+      EXPECT_NEAR(same->amplitude, p.amplitude, 2e-2 * p.amplitude) << p.speed / test::rpm;
+      ++compared;
+    }
+    EXPECT_EQ(found.size(), wanted.size());
+  }
+  EXPECT_GE(compared, 12u);
+}
+
+// A count along the axis that finds fewer growing motions than the list leaves neither standing.
+TEST(FrequencyModes, AContradictedListIsNotComplete) {
+  analysis::SpectrumCertificate c;
+  c.open.clear();
+  c.list.counted = true;
+  EXPECT_TRUE(c.complete());
+  c.axis.emplace();
+  c.axis->counted = true;
+  EXPECT_TRUE(c.complete());
+  EXPECT_TRUE(c.stability_certain());
+  for (const Index unknown : {-2, 2}) {
+    c.axis->unknown = unknown;
+    EXPECT_FALSE(c.complete()) << unknown;
+    EXPECT_FALSE(c.stability_certain()) << unknown;
+  }
 }

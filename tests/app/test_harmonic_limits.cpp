@@ -162,3 +162,76 @@ TEST(HarmonicLimits, UnbalanceNextToStandstill) {
   EXPECT_NEAR(slow.at("P y amplitude [m]") * 1e14, fast.at("P y amplitude [m]"),
               1e-4 * fast.at("P y amplitude [m]"));
 }
+
+namespace {
+
+/// A light damped rotor; resonances far narrower than the grid's steps of 34 Hz.
+std::string narrow_resonances(const std::string& grid) {
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 500, 30, 4], ["b", 500, 30, 4]]
+[shaft.damping]
+internal_beta = "1e-6 s"
+[[disk]]
+name = "d"
+at = "a:end"
+mass = "5 kg"
+Ip = "0.02 kg.m^2"
+Id = "0.01 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "1e8 N/m"
+kzz = "1.1e8 N/m"
+cyy = "3e4 N.s/m"
+czz = "3e4 N.s/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "1e8 N/m"
+kzz = "1.1e8 N/m"
+cyy = "3e4 N.s/m"
+czz = "3e4 N.s/m"
+[[probe]]
+name = "p"
+at = "d"
+[[step]]
+name = "push"
+type = "harmonic_response"
+rotor_speed = "1000 rpm"
+frequency = )" +
+         grid + R"(
+[[step.force]]
+at = "d"
+force = ["0 N", "1e-3 N", "0 N"]
+[output]
+report = false
+)";
+}
+
+}  // namespace
+
+// Resonances between the points of the grid: the largest of the response was 5e-5 of what it is.
+TEST(HarmonicLimits, PeaksBetweenThePointsOfTheGridAreFound) {
+  const auto range = [](int points) {
+    return narrow_resonances(
+        "{ start = \"5 Hz\", stop = \"1000 Hz\", points = " + std::to_string(points) + " }");
+  };
+  const whirl::test::DeckRun coarse(range(30)), fine(range(4001));
+  ASSERT_EQ(coarse.exit, 0) << coarse.log;
+  ASSERT_EQ(fine.exit, 0) << fine.log;
+  const auto peaks = coarse.csv("push_peaks.csv"), wanted = fine.csv("push_peaks.csv");
+  ASSERT_GE(wanted.rows.size(), 4u);
+  ASSERT_EQ(peaks.rows.size(), wanted.rows.size());
+  const std::size_t frequency = wanted.column("frequency [Hz]"),
+                    amplitude = wanted.column("amplitude [m]");
+  for (std::size_t k = 0; k < wanted.rows.size(); ++k)
+    for (const std::size_t c : {frequency, amplitude})
+      EXPECT_NEAR(peaks.rows[k][c], wanted.rows[k][c], 1e-6 * wanted.rows[k][c]);
+}

@@ -138,19 +138,22 @@ void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double hi
     }
 }
 
+std::vector<std::size_t> UnbalanceSolver::maxima(const std::vector<SteadyPoint>& points,
+                                                 std::size_t order, std::size_t probe) {
+  std::vector<double> sizes;
+  for (const SteadyPoint& p : points)
+    sizes.push_back(p.probe[order][probe].orbit().major);
+  return maxima_of(sizes);
+}
+
 void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
                                  const std::vector<SteadyPoint>& coarse,
                                  std::vector<SteadyPoint>& extra) {
   WHIRL_EXPECTS(probe < options_.probes.size());
   const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
   const auto evaluate = [&](double Omega) { return size(at(Omega, false)); };
-  double top = 0;
-  for (const SteadyPoint& p : coarse)
-    top = std::max(top, size(p));
-  for (std::size_t i = 1; i + 1 < coarse.size(); ++i) {
-    const double f0 = size(coarse[i - 1]), f1 = size(coarse[i]), f2 = size(coarse[i + 1]);
-    // a peak of rounding on a plateau is none
-    if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * top) continue;
+  for (const std::size_t i : maxima(coarse, order, probe)) {
+    const double f1 = size(coarse[i]);
     ResponsePeak peak;
     peak.order = order;
     peak.probe = probe;
@@ -191,34 +194,105 @@ std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& s
   return points;
 }
 
+bool UnbalanceSolver::shows_another(const std::vector<SteadyPoint>& points, std::size_t order,
+                                    std::size_t probe) const {
+  for (const std::size_t i : maxima(points, order, probe)) {
+    const bool known = std::any_of(peaks_.begin(), peaks_.end(), [&](const ResponsePeak& p) {
+      return p.order == order && p.probe == probe && p.speed >= points[i - 1].Omega &&
+             p.speed <= points[i + 1].Omega;
+    });
+    if (!known) return true;
+  }
+  return false;
+}
+
+bool UnbalanceSolver::is_straight(const SteadyPoint& a, const SteadyPoint& middle,
+                                  const SteadyPoint& b) const {
+  constexpr double enough = 0.1;
+  for (std::size_t k = 0; k < middle.probe.size(); ++k)
+    for (std::size_t p = 0; p < middle.probe[k].size(); ++p) {
+      const PointAmplitude &low = a.probe[k][p], &here = middle.probe[k][p], &high = b.probe[k][p];
+      const double off = std::abs(0.5 * (low.forward() + high.forward()) - here.forward()) +
+                         std::abs(0.5 * (low.backward() + high.backward()) - here.backward());
+      if (off > enough * here.orbit().major) return false;
+    }
+  return true;
+}
+
+void UnbalanceSolver::resolve(std::vector<SteadyPoint>& points) {
+  constexpr int rounds = 10;
+  std::vector<bool> open(points.size(), true);  // the stretch from a point to the next one
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> middles;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      if (open[i]) middles.push_back(0.5 * (points[i].Omega + points[i + 1].Omega));
+    if (middles.empty()) return;
+    std::vector<SteadyPoint> found = points_at(middles), merged;
+    std::vector<bool> still;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool divided = open[i] && i + 1 < points.size();
+      const bool again = divided && !is_straight(points[i], found[next], points[i + 1]);
+      merged.push_back(std::move(points[i]));
+      still.push_back(again);
+      if (!divided) continue;
+      merged.push_back(std::move(found[next++]));
+      still.push_back(again);
+    }
+    points = std::move(merged);
+    open = std::move(still);
+  }
+}
+
 UnbalanceResponse UnbalanceSolver::run() {
+  constexpr int rounds = 4;
   UnbalanceResponse out;
   const auto orders = linear_.running().orders();
   out.orders.assign(orders.begin(), orders.end());
   peaks_.clear();
   out.points = points_at(options_.speeds);
+  if (options_.resolve) resolve(out.points);
   const std::size_t probes = options_.probes.size();
-  std::vector<std::vector<SteadyPoint>> extra(orders.size() * probes);
-  std::vector<std::vector<ResponsePeak>> peaks(extra.size());
-  run_side_by_side(extra.size(), options_.threads, [&](std::size_t k) {
+  std::vector<std::size_t> open(orders.size() * probes);
+  for (std::size_t k = 0; k < open.size(); ++k)
+    open[k] = k;
+  for (int round = 0; round < rounds && !open.empty(); ++round) {
+    find_peaks_of(open, out.points);
+    std::erase_if(
+        open, [&](std::size_t k) { return !shows_another(out.points, k / probes, k % probes); });
+  }
+  return out;
+}
+
+void UnbalanceSolver::find_peaks_of(const std::vector<std::size_t>& numbers,
+                                    std::vector<SteadyPoint>& points) {
+  const std::size_t probes = options_.probes.size();
+  std::vector<std::vector<SteadyPoint>> extra(numbers.size());
+  std::vector<std::vector<ResponsePeak>> peaks(numbers.size());
+  run_side_by_side(numbers.size(), options_.threads, [&](std::size_t j) {
     Linearizer linear(linear_);
     UnbalanceSolver solver(linear, options_);
-    solver.find_peaks(k / probes, k % probes, out.points, extra[k]);
-    peaks[k] = std::move(solver.peaks_);
+    solver.find_peaks(numbers[j] / probes, numbers[j] % probes, points, extra[j]);
+    peaks[j] = std::move(solver.peaks_);
   });
-  for (std::size_t k = 0; k < extra.size(); ++k) {
-    std::move(peaks[k].begin(), peaks[k].end(), std::back_inserter(peaks_));
-    std::move(extra[k].begin(), extra[k].end(), std::back_inserter(out.points));
+  for (std::size_t j = 0; j < numbers.size(); ++j) {
+    std::erase_if(peaks_,
+                  [&](const ResponsePeak& p) { return p.order * probes + p.probe == numbers[j]; });
+    std::move(peaks[j].begin(), peaks[j].end(), std::back_inserter(peaks_));
+    std::move(extra[j].begin(), extra[j].end(), std::back_inserter(points));
   }
-  std::sort(out.points.begin(), out.points.end(),
+  std::stable_sort(peaks_.begin(), peaks_.end(),
+                   [probes](const ResponsePeak& a, const ResponsePeak& b) {
+                     return a.order * probes + a.probe < b.order * probes + b.probe;
+                   });
+  std::sort(points.begin(), points.end(),
             [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
   // the same peak seen by two probes: keep speeds apart by 1e-7
-  out.points.erase(std::unique(out.points.begin(), out.points.end(),
-                               [](const SteadyPoint& a, const SteadyPoint& b) {
-                                 return b.Omega - a.Omega < 1e-7 * std::abs(b.Omega);
-                               }),
-                   out.points.end());
-  return out;
+  points.erase(std::unique(points.begin(), points.end(),
+                           [](const SteadyPoint& a, const SteadyPoint& b) {
+                             return b.Omega - a.Omega < 1e-7 * std::abs(b.Omega);
+                           }),
+               points.end());
 }
 
 }  // namespace whirl::analysis

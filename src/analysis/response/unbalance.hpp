@@ -25,6 +25,10 @@ struct UnbalanceOptions {
   /// Multiples of the speed that are looked at of a rotor whose forces breathe with its turning
   /// (periodic_response.hpp); 0: it does not.
   int multiples = 0;
+  /// Put speeds in between those given until amplitudes between them are straight to a tenth: where
+  /// supports answer by frequency peaks need not stand near critical speeds, nor be as wide as these
+  /// say.
+  bool resolve = false;
   int threads = 1;  ///< 0: all processors; the results are the same for any number
 };
 
@@ -70,8 +74,20 @@ class UnbalanceSolver {
  private:
   /// At the speeds in their order: equilibria one after the other, responses side by side.
   std::vector<SteadyPoint> points_at(const std::vector<double>& speeds);
+  /// Numbers of the points at which the orbit of a probe is largest.
+  static std::vector<std::size_t> maxima(const std::vector<SteadyPoint>& points, std::size_t order,
+                                         std::size_t probe);
   void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
                   std::vector<SteadyPoint>& extra);
+  /// A maximum among the points that is none of the peaks: points about one peak may show another.
+  bool shows_another(const std::vector<SteadyPoint>& points, std::size_t order,
+                     std::size_t probe) const;
+  /// Puts points in until amplitudes between them are straight to a tenth.
+  void resolve(std::vector<SteadyPoint>& points);
+  bool is_straight(const SteadyPoint& a, const SteadyPoint& middle, const SteadyPoint& b) const;
+  /// Peaks of pairs order * probes + probe, in place of those known of them; points about them are
+  /// sorted into the points.
+  void find_peaks_of(const std::vector<std::size_t>& numbers, std::vector<SteadyPoint>& points);
   /// Half-power points of a peak near the sample i.
   void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
   /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low

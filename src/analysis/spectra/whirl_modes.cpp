@@ -607,7 +607,11 @@ std::string text_of(const SpectrumCertificate::Axis& a) {
   std::string out =
       a.unknown == 0 ? std::string("all growing roots counted (along the imaginary axis) and found")
       : a.unknown > 0 ? fmt::format("INCOMPLETE: {} growing roots more than found", a.unknown)
-                      : fmt::format("IN DOUBT: {} growing roots fewer than found", -a.unknown);
+                      : fmt::format(
+                            "IN DOUBT: {} growing roots fewer than found (supports that "
+                            "grow by themselves where the rotor is held still, or tables "
+                            "too coarse for their resonances)",
+                            -a.unknown);
   if (!a.held_beyond)
     out += fmt::format(", with the ends of the tables held beyond them ({:.5g} Hz)", to_hz(a.top));
   return out;

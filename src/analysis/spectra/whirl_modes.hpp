@@ -94,7 +94,9 @@ struct SpectrumCertificate {
     Index rising = 0;  ///< roots met at which a branch of frequencies rises; not in the list
   };
   std::optional<ByFrequency> by_frequency;
-  bool complete() const { return open.empty() && list.complete(); }
+  /// More or fewer motions grow, by the count along the imaginary axis, than were found.
+  bool contradicted() const { return axis && axis->counted && axis->unknown != 0; }
+  bool complete() const { return open.empty() && list.complete() && !contradicted(); }
   /// Every growing motion is in the list, at any frequency.
   bool stability_certain() const {
     return axis ? axis->certain() : complete() && quiet_above <= list.radius;
