@@ -180,3 +180,29 @@ TEST(Figures, AReplayIsKeptWhereADeckWantsIt) {
     EXPECT_EQ(fs::exists(run.folder / "r" / "plots" / "t_replay.svg"), wanted);
   }
 }
+
+// Zone A reaches 4800 um/sqrt(rpm) peak to peak: 37.9 um 0 to peak at 4000 rpm. A small response is
+// shown within it; a large one through all of them.
+TEST(Figures, ZonesColourTheResponse) {
+  const auto bode = [](const char* unbalance) {
+    std::string deck = lateral_mass(m, "0 m/s^2", springs);
+    deck.replace(deck.find("1 kg.mm"), 7, unbalance);
+    const DeckRun run(deck + R"([[step]]
+name = "u"
+type = "unbalance_response"
+speed = { start = "2000 rpm", stop = "6000 rpm", points = 41 }
+operating_speed = ["4000 rpm", "5000 rpm"]
+[step.zones]
+)");
+    EXPECT_EQ(run.exit, 0) << run.log;
+    return text_of(run.folder / "r" / "plots" / "u_P_bode.svg");
+  };
+  const std::string small = bode("10 g.mm"), large = bode("1 kg.mm");
+  EXPECT_NE(small.find(">zone A<"), std::string::npos);
+  EXPECT_EQ(small.find(">zone C<"), std::string::npos);
+  const std::size_t range = small.find("data-y=\"") + 8;
+  const double top = std::stod(small.substr(small.find(' ', range)));
+  EXPECT_NEAR(top, 1.12 * 2400 / std::sqrt(4000.0), 1e-9 * top);
+  for (const char* zone : {">zone A<", ">zone B<", ">zone C<", ">zone D<"})
+    EXPECT_NE(large.find(zone), std::string::npos) << zone;
+}
