@@ -369,7 +369,8 @@ std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, 
   std::vector<Box> names, taken;
   for (const Rule& r : a.rules) {
     names.emplace_back();
-    const double v = r.vertical ? x(r.value) : y(r.value), w = note_width(r.label);
+    const double v = r.vertical ? x(r.value) : y(r.value);
+    const double w = note_width(r.label) + 5;  // apart from its neighbours
     if (r.label.empty() || std::isnan(v) ||
         (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
       continue;

@@ -6,6 +6,7 @@
 #include <core/types.hpp>
 
 #include <complex>
+#include <tuple>
 
 namespace {
 
@@ -87,9 +88,9 @@ TEST(Figures, AnOrbitOfFewRowsIsDots) {
   }
 }
 
-// Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
-TEST(Figures, EveryShaftHasItsKeyphasor) {
-  const std::string two = R"([[shaft]]
+namespace {
+
+const std::string two = R"([[shaft]]
 name = "other"
 origin = ["0 mm", "1 m", "0 m"]
 speed_ratio = 1.5
@@ -126,6 +127,11 @@ at = "other/0 mm"
 type = "speed"
 speed = "4500 rpm"
 )";
+
+}  // namespace
+
+// Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
+TEST(Figures, EveryShaftHasItsKeyphasor) {
   std::string deck = lateral_mass(m, "0 m/s^2", springs + two) +
                      driven("3000 rpm", "duration = \"1 s\"\nstart = \"rest\"\n");
   const std::size_t one = deck.find("[shaft]");
@@ -142,6 +148,36 @@ speed = "4500 rpm"
   EXPECT_NEAR(other.at("Q.y 1X [m]"), radius_at(150 * pi), 1e-9);
   EXPECT_NEAR(other.at("Q 1X forward [m]"), radius_at(150 * pi), 1e-9);
   EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "machine.svg"));
+}
+
+// The one shakes the other through a spring: of its 1X nothing is left in what the other keyphasor
+// sees, and the vectors of a steady motion stand still.
+TEST(Figures, KeyphasorsLeaveTheOtherShaftOut) {
+  const std::string coupled = R"([[bearing]]
+name = "between"
+at = "mass"
+to = "mass 2"
+type = "linear"
+kyy = "3e5 N/m"
+kzz = "3e5 N/m"
+)";
+  std::string deck = lateral_mass(m, "0 m/s^2", springs + two + coupled) +
+                     driven("3000 rpm", "duration = \"1.2 s\"\nstart = \"rest\"\n");
+  deck.replace(deck.find("[shaft]"), 7, "[[shaft]]");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  // 2x2: each is shaken by its own unbalance at its own speed, and by the other's at the other's
+  for (const auto& [file, probe, rpm] : {std::tuple{"t_rotor_tracking.csv", "P.y 1X [m]", 3000.0},
+                                         std::tuple{"t_tracking.csv", "Q.y 1X [m]", 4500.0}}) {
+    const double Omega = rpm * pi / 30, between = 3e5;
+    const std::complex<double> own(k + between - m * Omega * Omega, c * Omega);
+    const double expected = std::abs(1e-3 * Omega * Omega * own / (own * own - between * between));
+    const test::Columns t = run.csv(file);
+    const std::size_t column = t.column(probe), n = t.rows.size();
+    ASSERT_GT(n, 30u);
+    for (std::size_t r = n - 20; r < n - 6; ++r)
+      EXPECT_NEAR(t.rows[r][column], expected, 1e-5 * expected) << file << " " << r;
+  }
 }
 
 TEST(Figures, ClearancesOfARubInResponseAndTransient) {
