@@ -202,9 +202,8 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
                                    const plot::DisplayUnit& unit) {
   plot::Axes a;
   a.x = plot::Axis("spin", "rpm");
-  a.y = plot::Axis(
-      fmt::format("radius about the start, {}", plot::to_string(convention_)),
-      unit.name);
+  a.y = plot::Axis(fmt::format("radius about the start, {}", plot::to_string(convention_)),
+                   unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
   const std::size_t top = turning_row();
