@@ -164,7 +164,26 @@ std::string print_size(const Table& t, const std::vector<ShownColumn>& columns) 
   return " style=\"--print:" + readable(std::max(least, page / width), 2) + "pt\"";
 }
 
-std::string table_html(const Table& t, const FigureNumbers& numbers) {
+/// Of a wide table the columns that say something; those without a number in any row are in the
+/// file alone.
+Table without_empty_columns(const Table& t) {
+  if (t.columns.size() <= 10 || t.rows.size() < 3) return t;
+  Table out = t;
+  for (std::size_t k = t.columns.size(); k-- > 0;) {
+    const bool empty = std::all_of(t.rows.begin(), t.rows.end(), [k](const auto& row) {
+      return k < row.size() && !row[k].is_text && std::isnan(row[k].number);
+    });
+    if (!empty) continue;
+    const auto column = static_cast<std::ptrdiff_t>(k);
+    out.columns.erase(out.columns.begin() + column);
+    for (auto& row : out.rows)
+      row.erase(row.begin() + column);
+  }
+  return out;
+}
+
+std::string table_html(const Table& whole, const FigureNumbers& numbers) {
+  const Table t = without_empty_columns(whole);
   std::vector<ShownColumn> columns(t.columns.size());
   for (std::size_t k = 0; k < t.columns.size(); ++k)
     columns[k] = shown_as(t, k);

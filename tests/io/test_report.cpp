@@ -131,6 +131,28 @@ TEST(Report, WideTablesFitThePage) {
   EXPECT_NE(narrow.find("<small>m³/s</small>"), std::string::npos);
 }
 
+TEST(Report, WideTablesLeaveEmptyColumnsOut) {
+  const auto html_of = [](std::size_t columns) {
+    Table t;
+    for (std::size_t k = 0; k < columns; ++k)
+      t.columns.push_back({"column " + std::to_string(k), "-", ""});
+    for (int row = 0; row < 3; ++row) {
+      std::vector<Table::Cell> cells(columns, Table::Cell(1.0));
+      cells[2] = Table::Cell(nan);
+      if (row == 1) cells[3] = Table::Cell(nan);
+      t.rows.push_back(std::move(cells));
+    }
+    Report r;
+    r.sections = {{"one", "", {t}, {}, {}}};
+    return render_report(r);
+  };
+  const std::string narrow = html_of(5), wide = html_of(12);
+  EXPECT_NE(narrow.find(">column 2<"), std::string::npos);
+  EXPECT_EQ(wide.find(">column 2<"), std::string::npos);
+  for (const char* kept : {">column 1<", ">column 3<", ">column 11<"})
+    EXPECT_NE(wide.find(kept), std::string::npos) << kept;
+}
+
 TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   Report r;
   const plot::Figure f = gallery().front();
