@@ -78,7 +78,9 @@ Converted convert_file(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const std::string extension = lower_extension(file);
   if (extension == ".xlsx" || extension == ".xls" || extension == ".ods")
-    Notes(name).refuse("a workbook cannot be read", "save the sheet as CSV and convert that");
+    Notes(name).refuse("a workbook is not read, only the text of a sheet is",
+                       "save the sheet as CSV (File, Save As; or soffice --convert-to csv '" +
+                           name + "') and convert that");
   const deck::FileText text = deck::read_file(file, deck::max_table_bytes);
   if (!text.ok())
     throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, text.code, text.message,

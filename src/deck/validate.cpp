@@ -136,6 +136,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_tables(m, out);
   check_linear(m, out);
   check_events(m, out);
+  check_torques(m, out);
   check_maps(m, out);
   check_drives(m, out);
   check_start_speeds(m, out);

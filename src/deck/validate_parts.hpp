@@ -32,6 +32,7 @@ void check_speeds_of_joints(const model::Model& m, Problems& out);
 // validate_steps.cpp: what a step can be asked for
 void check_linear(const model::Model& m, Problems& out);
 void check_events(const model::Model& m, Problems& out);
+void check_torques(const model::Model& m, Problems& out);
 void check_maps(const model::Model& m, Problems& out);
 /// Steps without damping on magnetic bearings.
 void check_controllers(const model::Model& m, Problems& out);

@@ -184,6 +184,24 @@ void check_events(const model::Model& m, Problems& out) {
   }
 }
 
+/// An order is counted in turns of the shaft that the torque acts on.
+void check_torques(const model::Model& m, Problems& out) {
+  for (const model::Step& s : m.steps) {
+    const auto* report_step = std::get_if<model::ApiTorsionalStep>(&s.law);
+    if (!report_step) continue;
+    for (const model::ApiTorque& t : report_step->torques) {
+      const model::Shaft& shaft = m.shafts[t.at.shaft];
+      const bool turns = shaft.rotating && shaft.speed_ratio != 0;
+      if (turns || (t.order == 0 && t.harmonics.empty())) continue;
+      report(out, "E26",
+             fmt::format("torque '{}' is given by orders of the speed of shaft '{}', which does "
+                         "not turn",
+                         t.name, shaft.name),
+             "give its frequency, or a place on a shaft that turns", t.where);
+    }
+  }
+}
+
 void check_maps(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);

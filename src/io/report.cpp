@@ -38,6 +38,7 @@ struct ShownColumn {
   bool numeric = false;
   plot::DisplayUnit unit{1.0, ""};
   double zero_below = 0;  ///< what is smaller is rounding
+  bool units = false;     ///< its cells are units
 };
 
 /// Largest number of a column and of those beside it in the same unit: lowest and highest, from and
@@ -54,14 +55,16 @@ double largest_beside(const Table& t, std::size_t k) {
 
 /// Columns beside each other in the same unit share a prefix as long as that leaves each its digits.
 /// Shares and ratios may be small and right; of what has a unit, a million millionth of the largest
-/// is rounding.
+/// is rounding, of forces and moments a millionth of those beside them nothing.
 ShownColumn shown_as(const Table& t, std::size_t k) {
   ShownColumn out;
   out.numeric = !t.rows.empty() && !t.rows[0][k].is_text;  // set so when its first cell is a number
+  out.units = t.columns[k].name == "unit";
   const std::string& unit = t.columns[k].unit;
   if (unit == "-" || unit.empty()) return out;
   const double own = largest_in(t, k), all = largest_beside(t, k);
-  out.zero_below = unit == "%" ? 5e-5 : 1e-12 * all;
+  const bool load = unit == "N" || unit == "N.m" || unit == "N m";
+  out.zero_below = unit == "%" ? 5e-5 : load ? 1e-6 * all : 1e-12 * all;
   out.unit.name = unit;
   const bool metric = unit == "m" || unit == "N" || unit == "N.m" || unit == "N m" ||
                       unit == "Pa" || unit == "J" || unit == "W";
@@ -69,6 +72,24 @@ ShownColumn shown_as(const Table& t, std::size_t k) {
   const double largest = own > out.zero_below && own < 1e-2 * all ? own : all;
   out.unit = unit == "m" ? plot::length_unit(largest) : plot::unit_for(unit, largest);
   return out;
+}
+
+/// A unit as it is printed: "kg m2" is "kg·m²".
+std::string printed_unit(std::string unit) {
+  const auto replace = [&unit](std::string_view from, std::string_view to) {
+    for (std::size_t at = unit.find(from); at != std::string::npos; at = unit.find(from, at))
+      unit.replace(at, from.size(), to);
+  };
+  replace("^2", "²");
+  replace("^3", "³");
+  replace("m2", "m²");
+  replace("m3", "m³");
+  replace("N.", "N·");
+  replace("N m", "N·m");
+  replace("kg m", "kg·m");
+  replace("g mm", "g·mm");
+  if (unit.starts_with("um")) unit.replace(0, 1, "µ");
+  return unit;
 }
 
 /// What stands for a number that is none.
@@ -82,7 +103,7 @@ std::string cell_html(const Table::Cell& c, const ShownColumn& column,
                            : c.mark == Mark::failed ? "failed"
                            : column.numeric         ? "n"
                                                     : "";
-  std::string text = c.is_text              ? escape(c.text)
+  std::string text = c.is_text              ? escape(column.units ? printed_unit(c.text) : c.text)
                      : std::isnan(c.number) ? no_number
                      : std::abs(c.number) < column.zero_below
                          ? "0"
@@ -103,17 +124,77 @@ std::string footnote(const Table& t) {
          escape(t.nan_means.empty() ? "not found" : t.nan_means) + "</p>";
 }
 
-std::string table_html(const Table& t, const FigureNumbers& numbers) {
-  std::string s = "<div class=\"scroll\"><table>";
+/// Characters of a text as it is seen, of one with markup or several bytes a letter too.
+std::size_t letters_of(const std::string& html) {
+  std::size_t n = 0;
+  bool tag = false;
+  for (const char c : html) {
+    if (c == '<') tag = true;
+    if (!tag && (static_cast<unsigned char>(c) & 0xC0) != 0x80) ++n;
+    if (c == '>') tag = false;
+  }
+  return n;
+}
+
+std::size_t longest_word(const std::string& text) {
+  std::size_t longest = 0;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    longest = std::max(longest, letters_of(text.substr(from, to - from)));
+    from = to + 1;
+  }
+  return longest;
+}
+
+/// Size of the letters that let a table stand on a printed page 182 mm wide; empty: the usual one.
+std::string print_size(const Table& t, const std::vector<ShownColumn>& columns) {
+  constexpr double page = 510, usual = 8, least = 3.5;  // pt
+  double width = 0;                                     // em
+  for (std::size_t k = 0; k < t.columns.size(); ++k) {
+    std::size_t letters =
+        std::max(longest_word(t.columns[k].name), letters_of(printed_unit(columns[k].unit.name)));
+    for (const auto& row : t.rows)
+      if (k < row.size()) {
+        const std::string cell = cell_html(row[k], columns[k], {});
+        letters = std::max(letters, columns[k].numeric ? letters_of(cell) : longest_word(cell));
+      }
+    width += 0.58 * static_cast<double>(letters) + 0.75;
+  }
+  if (width * usual <= page) return {};
+  return " style=\"--print:" + readable(std::max(least, page / width), 2) + "pt\"";
+}
+
+/// Of a wide table the columns that say something; those without a number in any row are in the
+/// file alone.
+Table without_empty_columns(const Table& t) {
+  if (t.columns.size() <= 10 || t.rows.size() < 3) return t;
+  Table out = t;
+  for (std::size_t k = t.columns.size(); k-- > 0;) {
+    const bool empty = std::all_of(t.rows.begin(), t.rows.end(), [k](const auto& row) {
+      return k < row.size() && !row[k].is_text && std::isnan(row[k].number);
+    });
+    if (!empty) continue;
+    const auto column = static_cast<std::ptrdiff_t>(k);
+    out.columns.erase(out.columns.begin() + column);
+    for (auto& row : out.rows)
+      row.erase(row.begin() + column);
+  }
+  return out;
+}
+
+std::string table_html(const Table& whole, const FigureNumbers& numbers) {
+  const Table t = without_empty_columns(whole);
+  std::vector<ShownColumn> columns(t.columns.size());
+  for (std::size_t k = 0; k < t.columns.size(); ++k)
+    columns[k] = shown_as(t, k);
+  std::string s = "<div class=\"scroll\"><table" + print_size(t, columns) + ">";
   if (!t.title.empty()) s += "<caption>" + escape(t.title) + "</caption>";
   s += "<thead><tr>";
-  std::vector<ShownColumn> columns(t.columns.size());
   for (std::size_t k = 0; k < t.columns.size(); ++k) {
-    columns[k] = shown_as(t, k);
     const auto& c = t.columns[k];
     s += columns[k].numeric ? "<th class=\"n\"" : "<th";
     if (!c.description.empty()) s += " title=\"" + escape(c.description) + '"';
-    const std::string& unit = columns[k].unit.name;
+    const std::string unit = printed_unit(columns[k].unit.name);
     s += ">" + escape(c.name) + (unit.empty() ? "" : "<small>" + escape(unit) + "</small>") +
          "</th>";
   }

@@ -55,6 +55,14 @@ Grid lay_out(const Figure& figure, double top) {
     free -= g.row_top[r] + g.row_bottom[r];
   for (const double w : weight)
     g.height.push_back(std::max(10.0, free * w / total));
+  for (int pass = 0; pass < 2; ++pass)
+    for (std::size_t i = 0; i < n; ++i) {
+      if (figure.axes[i].kind != AxesKind::cartesian) continue;
+      Margins& column = g.column[i % g.columns];
+      const Box frame{column.left, 0, g.cell_w - column.left - column.right,
+                      g.height[i / g.columns]};
+      column.left = std::max(column.left, left_margin(figure.axes[i], frame));
+    }
   return g;
 }
 

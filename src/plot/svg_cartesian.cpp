@@ -93,6 +93,15 @@ bool has_right(const Axes& a) {
          std::any_of(a.bars.begin(), a.bars.end(), [](const Bars& s) { return s.right_axis; });
 }
 
+/// A band at the top, of the height given, without data.
+void make_room(Scale& s, double band, double height) {
+  const double more = band / (height - band);
+  if (s.log)
+    s.hi *= std::pow(s.hi / s.lo, more);
+  else
+    s.hi += more * (s.hi - s.lo);
+}
+
 void place(Prepared& p, const Axes& a, const Box& b) {
   p.x.p0 = b.x;
   p.x.p1 = b.right();
@@ -106,14 +115,33 @@ void place(Prepared& p, const Axes& a, const Box& b) {
     p.y.lo = cy - u * b.h / 2;
     p.y.hi = cy + u * b.h / 2;
   }
+  const double band = std::min(names_height(a, p.x, b), 0.45 * b.h);
+  if (std::isnan(a.y.max)) make_room(p.y, band, b.h);
+  if (std::isnan(a.right.max)) make_room(p.r, band, b.h);
   // With equal aspect both directions get the same step.
   p.tx = axis_ticks(a.x, p.x, b.w, a.equal_aspect ? 68 : 90);
   p.ty = axis_ticks(a.y, p.y, b.h, a.equal_aspect ? 68 : 48);
   if (has_right(a)) p.tr = axis_ticks(a.right, p.r, b.h, 48);
 }
 
-bool legend_outside(const std::vector<LegendEntry>& e, double height) {
-  return e.size() > 8 || legend_size_of(e).h > 0.6 * height;
+/// Points of the curves about 6 px apart, of long ones as many as tell where they are.
+void look_over(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
+  constexpr std::size_t most = 2000;
+  for (const Series& s : a.series) {
+    const Scale& scale = s.right_axis ? p.r : p.y;
+    const std::size_t n = std::min(s.x.size(), s.y.size()), stride = n / most + 1;
+    Point last{nan, nan};
+    for (std::size_t i = 0; i < n; i += stride) {
+      const Point q{p.x(s.x[i]), scale(s.y[i])};
+      const bool joined = stride == 1 && s.style.width > 0;
+      const double way = joined ? std::hypot(q.x - last.x, q.y - last.y) : 0.0;
+      const int parts = way < 4000 ? static_cast<int>(way / 6) : 0;
+      for (int k = 1; k < parts; ++k)
+        seen.push_back({last.x + (q.x - last.x) * k / parts, last.y + (q.y - last.y) * k / parts});
+      if (std::isfinite(q.x) && std::isfinite(q.y)) seen.push_back(q);
+      last = q;
+    }
+  }
 }
 
 void draw_grid(Canvas& c, const Prepared& p, const Box& b) {
@@ -184,10 +212,11 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
              axis_title(a.right, p.tr.exponent), "r");
 }
 
-/// Points over the extent of every patch, for what shall not hide one.
+/// Points over the extent of every body, a patch with an outline, for what shall not hide one.
 void add_bodies(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
   constexpr double apart = 8;  // px
   for (const Patch& s : a.patches) {
+    if (s.style.width <= 0) continue;
     double x0 = infinity, x1 = -infinity, y0 = infinity, y1 = -infinity;
     for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) {
       const double x = p.x(s.x[i]), y = p.y(s.y[i]);
@@ -240,10 +269,9 @@ void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
   finish(rr, a.right, 0.06, right);
 }
 
-Margins cartesian_margins(const Axes& a, double width, double height, const CartesianFlags& f) {
-  Prepared p;
-  data_range(a, p.x, p.y, p.r);
-  place(p, a, {0, 0, std::max(50.0, width - 90), std::max(40.0, height - 60)});
+namespace {
+
+Margins margins_about(const Axes& a, const Prepared& p, const CartesianFlags& f) {
   Margins m;
   m.left = widest_label(p.ty) + tick_length + 3 + 24;
   m.bottom = f.hide_x ? 8 : 42;
@@ -253,9 +281,45 @@ Margins cartesian_margins(const Axes& a, double width, double height, const Cart
                                : text_width(p.tx.labels.back(), tick_size) / 2 + 4);
   if (has_right(a)) m.right = widest_label(p.tr) + tick_length + 30;
   if (!a.heat.empty()) m.right = colorbar;
-  if (const auto e = legend_entries(a, resolve_colors(a)); legend_outside(e, height))
-    m.right += legend_size_of(e).w + 6;
   return m;
+}
+
+}  // namespace
+
+Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f) {
+  Prepared p;
+  data_range(a, p.x, p.y, p.r);
+  const Prepared data = p;
+  place(p, a, {0, 0, std::max(50.0, width - 90), std::max(40.0, height - 60)});
+  const Margins first = margins_about(a, p, f);
+  const auto entries = legend_entries(a, resolve_colors(a));
+  const Box size = legend_size_of(entries);
+  const auto frame_beside = [&](const Margins& m, double legend) {
+    return Box{m.left, m.top, std::max(50.0, width - m.left - m.right - legend),
+               std::max(40.0, height - m.top - m.bottom)};
+  };
+  p = data;
+  const Box frame = frame_beside(first, 0);
+  place(p, a, frame);
+  std::vector<Point> seen;
+  look_over(a, p, seen);
+  add_bodies(a, p, seen);
+  f.legend_outside = entries.size() > 8 || size.h > 0.6 * height ||
+                     legend_hides(entries, frame, seen, places_of_names(a, p.x, p.y, frame));
+  const double legend = f.legend_outside ? size.w + 6 : 0.0;
+  p = data;
+  place(p, a, frame_beside(first, legend));
+  Margins m = margins_about(a, p, f);
+  m.left = std::max(m.left, first.left);
+  m.right = std::max(m.right, first.right) + legend;
+  return m;
+}
+
+double left_margin(const Axes& a, const Box& frame) {
+  Prepared p;
+  data_range(a, p.x, p.y, p.r);
+  place(p, a, frame);
+  return margins_about(a, p, {}).left;
 }
 
 void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags& f) {
@@ -287,7 +351,7 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   std::vector<PinJob> pins;
   std::vector<Box> taken;
   const auto entries = legend_entries(a, k);
-  const bool outside = legend_outside(entries, b.h);
+  const bool outside = f.legend_outside;
   c.add("<g clip-path=\"url(#" + clip + ")\"><g class=\"plot\">\n");
   if (!a.heat.empty()) draw_heat(c, a.heat.front(), p);
   draw_bars_and_patches(c, a, k, p);
@@ -297,12 +361,12 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   for (const auto& job : pins)
     draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series),
               a.series[job.series].right_axis, job.attributes);
+  add_bodies(a, p, seen);
   draw_notes(c, a, p, b, taken, seen);
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
   const Box size = legend_size_of(entries);
-  add_bodies(a, p, seen);
   draw_legend(c, entries, b, seen, taken,
               outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
                                          : a.heat.empty() ? 8

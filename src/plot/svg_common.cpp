@@ -67,6 +67,8 @@ const char* color_value(int color) {
 }  // namespace
 
 std::string stroke(int color, double width, Dash dash) {
+  if (dash == Dash::solid && color >= palette_size)  // a colour met before
+    dash = color < 2 * palette_size ? Dash::dashed : Dash::dotted;
   std::string s = "class=\"" + color_class('c', color) + "\" stroke=\"" + color_value(color) +
                   "\" fill=\"none\"";
   if (width > 0) s += " stroke-width=\"" + number_text(width) + '"';

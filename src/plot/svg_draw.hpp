@@ -54,7 +54,8 @@ inline constexpr double tick_size = 11.5, label_size = 12.5, title_size = 13.5, 
 /// A browser without the fonts asked for takes others, which are wider.
 inline constexpr double wide_fonts = 1.15;
 
-/// class and presentation attributes of a stroke or fill in palette colour k (or ink, faint).
+/// class and presentation attributes of a stroke or fill in palette colour k (or ink, faint). Solid
+/// strokes in a colour beyond the palette, which comes round again, are dashed.
 std::string stroke(int color, double width = 0, Dash dash = Dash::solid);
 std::string fill(int color);
 std::string paper_fill();
@@ -92,6 +93,9 @@ struct LegendEntry {
 std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k);
 /// Size of the legend box.
 Box legend_size_of(const std::vector<LegendEntry>& entries);
+/// Whether every place inside the frame hides some of `seen` or `taken`.
+bool legend_hides(const std::vector<LegendEntry>& entries, const Box& frame,
+                  const std::vector<Point>& seen, const std::vector<Box>& taken);
 /// Draws it where it hides the fewest of `seen` inside the frame, or at `outside` when its width is
 /// positive.
 void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
@@ -121,6 +125,11 @@ void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar);
 void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
                  std::vector<Point>& seen, std::vector<PinJob>& pins);
 void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prepared& p);
+/// Where the names of the rules stand, one a rule; empty boxes of those that have none or are not
+/// in sight.
+std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b);
+/// Height that names of vertical rules take at the top of the frame, px.
+double names_height(const Axes& a, const Scale& x, const Box& b);
 void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b);
 /// A circle at p and the text beside it, where it covers the least of what is there; adds its place
 /// to `taken`.
@@ -134,8 +143,12 @@ struct Margins {
 };
 struct CartesianFlags {
   bool hide_x = false;
+  bool legend_outside = false;
 };
-Margins cartesian_margins(const Axes& a, double width, double height, const CartesianFlags& f);
+/// Also decides where the legend stands.
+Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f);
+/// Of a frame that stands: its ticks may have wider labels than those reckoned with.
+double left_margin(const Axes& a, const Box& frame);
 void draw_cartesian(Canvas& c, const Axes& a, const Box& frame, const CartesianFlags& f);
 void draw_polar(Canvas& c, const Axes& a, const Box& cell);
 void draw_space(Canvas& c, const Axes& a, const Box& cell);

@@ -36,6 +36,10 @@ Box legend_size_of(const std::vector<LegendEntry>& entries) {
 
 namespace {
 
+bool covers(const Box& t, const Point& p) {
+  return p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3;
+}
+
 /// Of nine places in the frame the one where a legend of this size hides least: corners first, the
 /// upper right before the others.
 Box best_place(const Box& size, const Box& frame, const std::vector<Point>& seen,
@@ -51,8 +55,9 @@ Box best_place(const Box& size, const Box& frame, const std::vector<Point>& seen
       const Box t{xs[ix], ys[iy], size.w, size.h};
       double inside = 0;
       for (const Point& p : seen)
-        if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3) ++inside;
-      double cost = 0.002 * (3 * iy + ix) + inside / (1.0 + static_cast<double>(seen.size()));
+        inside += covers(t, p) ? 1 : 0;
+      double cost = 0.002 * (3 * iy + ix) + (inside > 0 ? 0.1 : 0.0) +
+                    inside / (1.0 + static_cast<double>(seen.size()));
       for (const Box& o : taken)
         cost += t.overlaps(o) ? 2 : 0;
       if (cost < least) {
@@ -94,6 +99,14 @@ void draw_entry(Canvas& c, const LegendEntry& e, const Box& b, double y) {
 }
 
 }  // namespace
+
+bool legend_hides(const std::vector<LegendEntry>& entries, const Box& frame,
+                  const std::vector<Point>& seen, const std::vector<Box>& taken) {
+  if (entries.empty()) return false;
+  const Box best = best_place(legend_size_of(entries), frame, seen, taken);
+  return std::any_of(seen.begin(), seen.end(), [&](const Point& p) { return covers(best, p); }) ||
+         std::any_of(taken.begin(), taken.end(), [&](const Box& b) { return best.overlaps(b); });
+}
 
 void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
                  const std::vector<Point>& seen, const std::vector<Box>& taken,

@@ -365,12 +365,14 @@ void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& fr
   c.add("</g>\n");
 }
 
-void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
-                const std::vector<Point>& seen) {
-  for (const auto& r : a.rules) {
-    if (r.label.empty()) continue;
-    const double v = r.vertical ? p.x(r.value) : p.y(r.value), w = note_width(r.label);
-    if (std::isnan(v) || (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
+std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b) {
+  std::vector<Box> names, taken;
+  for (const Rule& r : a.rules) {
+    names.emplace_back();
+    const double v = r.vertical ? x(r.value) : y(r.value);
+    const double w = note_width(r.label) + 5;  // apart from its neighbours
+    if (r.label.empty() || std::isnan(v) ||
+        (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
       continue;
     Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
     if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
@@ -381,6 +383,28 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::
       else
         at.x -= w + 10;
     }
+    taken.push_back(at);
+    names.back() = at;
+  }
+  return names;
+}
+
+double names_height(const Axes& a, const Scale& x, const Box& b) {
+  double lowest = b.y;
+  const Scale nowhere{0, 1, false, nan, nan};  // of names beside level rules
+  for (const Box& at : places_of_names(a, x, nowhere, b))
+    if (at.w > 0) lowest = std::max(lowest, at.bottom() + 2);
+  return lowest - b.y;
+}
+
+void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
+                const std::vector<Point>& seen) {
+  const std::vector<Box> names = places_of_names(a, p.x, p.y, b);
+  for (std::size_t i = 0; i < a.rules.size(); ++i) {
+    const Rule& r = a.rules[i];
+    const Box& at = names[i];
+    if (!(at.w > 0)) continue;
+    const double v = r.vertical ? p.x(r.value) : p.y(r.value);
     taken.push_back(at);
     c.add("<g class=\"pin\" data-p=\"" + number_text(r.vertical ? v : b.right()) + " " +
           number_text(r.vertical ? b.y : v) + "\" data-lock=\"" + (r.vertical ? "y" : "x") + "\">");

@@ -189,7 +189,7 @@ plot::Figure draw_unrolled(const std::string& name, const SupportCoefficients& c
   a.x = plot::Axis("angle", "deg");
   a.y = plot::Axis("pressure", "MPa");
   a.y.include_zero = true;
-  a.right = plot::Axis("film thickness", "um");
+  a.right = plot::Axis("film thickness", "µm");
   a.right.include_zero = true;
   curves.thickness.right_axis = true;
   a.series.push_back(std::move(curves.pressure));
@@ -227,7 +227,7 @@ plot::Figure draw_round(const std::string& name, const SupportCoefficients& c) {
     f.axes.push_back(std::move(a));
   };
   add("pressure", "MPa", {std::move(curves.pressure)});
-  add("film thickness", "um", {std::move(curves.thickness)});
+  add("film thickness", "µm", {std::move(curves.thickness)});
   if (c.films->heat) add("temperature", "degC", {std::move(curves.face), std::move(curves.film)});
   return f;
 }

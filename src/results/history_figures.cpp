@@ -202,9 +202,8 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
                                    const plot::DisplayUnit& unit) {
   plot::Axes a;
   a.x = plot::Axis("spin", "rpm");
-  a.y = plot::Axis(
-      fmt::format("orbit radius about the place at the start, {}", plot::to_string(convention_)),
-      unit.name);
+  a.y = plot::Axis(fmt::format("radius about the start, {}", plot::to_string(convention_)),
+                   unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
   const std::size_t top = turning_row();
@@ -262,7 +261,7 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   if (each_turn < 12) {  // straight lines between them would show a path that there is not
     s.style.width = 0;
     s.style.marker = plot::Marker::circle;
-    s.style.marker_size = 2;
+    s.style.marker_size = range.to - range.from < 200 ? 5 : 2;
   }
   for (std::size_t r = range.from; r < range.to; ++r) {
     s.x.push_back(unit.factor * rows_[r][y]);

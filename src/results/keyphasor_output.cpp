@@ -152,6 +152,7 @@ class KeyphasorOutput final : public TransientOutput {
   std::vector<Tracked> probes_;
   std::vector<double> filtered_;  ///< orders asked for, and the first if it is not among them
   std::size_t first_ = 0;         ///< of filtered_: order 1
+  int turns_ = 1;                 ///< of the filter
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;
   PlotBuffer rows_;
@@ -176,6 +177,23 @@ std::vector<analysis::Point> points_of(const run::Job& job, const Keyphasor& key
   return points;
 }
 
+/// As the bandwidth says, or so many more, up to 12, that nothing is let through of what other
+/// shafts do once a turn of theirs: 2/M orders away and further (OrderFilter).
+int turns_of(const run::Job& job, const Keyphasor& keyphasor) {
+  constexpr int most = 12;
+  const int asked = job.model.output.tracking.filter_turns();
+  const Index line = job.mesh.nodes[at(keyphasor.node)].line;
+  if (asked == 1 || line < 0) return asked;
+  const double own = std::abs(job.model.shafts[at(line)].speed_ratio);
+  int turns = asked;
+  for (const model::Shaft& other : job.model.shafts) {
+    const double away = std::abs(std::abs(other.speed_ratio) / own - 1.0);
+    if (!other.rotating || !(own > 0) || !(away > 1e-9)) continue;
+    turns = std::max(turns, static_cast<int>(std::min<double>(most, std::ceil(2.0 / away - 1e-9))));
+  }
+  return turns;
+}
+
 KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyphasor)
     : out_(s.job.model.output),
       step_(s.step.name),
@@ -183,9 +201,9 @@ KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyph
       filtered_(orders_with_the_first(out_.tracking.orders)),
       first_(static_cast<std::size_t>(std::find(filtered_.begin(), filtered_.end(), 1.0) -
                                       filtered_.begin())),
+      turns_(turns_of(s.job, keyphasor)),
       rows_(0),
-      filter_(keyphasor.probes.size(), filtered_, out_.tracking.samples,
-              out_.tracking.filter_turns(),
+      filter_(keyphasor.probes.size(), filtered_, out_.tracking.samples, turns_,
               [this](const analysis::Turn& t, std::span<const Complex> y,
                      std::span<const Complex> z) { take(t, y, z); }),
       revolutions_(points_of(s.job, keyphasor), keyphasor.node, out_.tracking.samples,
@@ -197,8 +215,7 @@ KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyph
                    }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
-  content_ =
-      fmt::format("{} filter {} {}", out_.tracking.samples, out_.tracking.filter_turns(), shaft_);
+  content_ = fmt::format("{} filter {} {}", out_.tracking.samples, turns_, shaft_);
   for (double order : out_.tracking.orders)
     content_ += fmt::format(" {}X", order);
   for (double speed : out_.tracking.orbit_speeds)
@@ -387,7 +404,13 @@ void KeyphasorOutput::report(TransientEnd& end) {
   if (sink_)
     end.section.files.emplace_back(
         shaft_.empty() ? "tracking filter" : "tracking filter of " + shaft_, file("tracking.csv"));
-  for (std::size_t p = 0; p < probes_.size(); ++p) {
+  constexpr std::size_t fewest = 8;  // turns that make a curve
+  const bool few = rows.size() < fewest && speed_changes(rows);
+  if (few)
+    end.section.text += fmt::format(
+        "\n\n{} turns are too few to show amplitude and phase against {}: they stand in {}.",
+        rows.size(), speed_name(), file("tracking.csv"));
+  for (std::size_t p = 0; p < probes_.size() && !few; ++p) {
     const double size = largest_envelope(p);
     if (size == 0.0) continue;  // torsion alone: nothing to see here
     if (speed_changes(rows))
@@ -448,6 +471,10 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   const std::string id = step_ + "_" + safe_name(probe.name);
   const std::size_t top = turning_row(rows);
   const bool both = top >= 2 && rows.size() - top >= 3;
+  // at the ends fewer turns are looked at, which do not leave other shafts out
+  const auto half = static_cast<std::size_t>(turns_) / 2;
+  const bool cut = turns_ > out_.tracking.filter_turns() && rows.size() > 4 * half;
+  const std::size_t first = cut ? half : 0, last = rows.size() - first;
   std::vector<plot::ResponseCurve> curves, envelope;
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
     for (const bool rising : {true, false}) {
@@ -457,14 +484,15 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
       c.label = probe.directions[d].name + (both ? rising ? " rising" : " falling" : "");
       plot::ResponseCurve e = c;
       for (std::size_t r = from; r < to; ++r) {
+        e.speed.push_back(rows[r][1]);
+        e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]);
+        e.phase_lag.push_back(nan);
+        if (r < first || r >= last) continue;
         const double amplitude = rows[r][column(p, d, 0)];
         // below a billionth of the largest motion the phase is that of rounding
         c.speed.push_back(rows[r][1]);
         c.amplitude.push_back(amplitude);
         c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 1)] : nan);
-        e.speed.push_back(rows[r][1]);
-        e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]);
-        e.phase_lag.push_back(nan);
       }
       curves.push_back(std::move(c));
       envelope.push_back(std::move(e));
@@ -480,9 +508,9 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   bode.axes[1].y.max = 360.0;
   bode.axes[1].y.ticks = {0, 90, 180, 270, 360};
   bode.axes[1].x.label = speed_name();
-  bode.caption = fmt::format(
-      "Filter of {} turn{}: half of what is {:.3g} orders away.", out_.tracking.filter_turns(),
-      out_.tracking.filter_turns() == 1 ? "" : "s", 0.5 * out_.tracking.bandwidth);
+  bode.caption = fmt::format("Filter of {} turn{}: half of what is {:.3g} orders away.", turns_,
+                             turns_ == 1 ? "" : "s",
+                             turns_ == 1 ? 0.5 * out_.tracking.bandwidth : 1.0 / turns_);
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(
       id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention_));
@@ -547,6 +575,22 @@ double clearance_at(const run::Job& job, const std::string& probe) {
   return 0.0;
 }
 
+namespace {
+
+/// Of a clearance, m; factor: to the unit shown.
+plot::Series circle_of(double gap, double factor) {
+  plot::Series circle;
+  circle.label = "clearance";
+  circle.style = {plot::ink, plot::Dash::dashed, 1.0};
+  for (int k = 0; k <= 120; ++k) {
+    circle.x.push_back(factor * gap * std::cos(two_pi * k / 120));
+    circle.y.push_back(factor * gap * std::sin(two_pi * k / 120));
+  }
+  return circle;
+}
+
+}  // namespace
+
 /// Where the middle of the orbit goes: what a journal in its film does while the speed changes.
 void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) const {
   const Tracked& probe = probes_[p];
@@ -582,21 +626,24 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) con
       a.notes.push_back({unit.factor * rows[r][y], unit.factor * rows[r][z],
                          fmt::format("{:.4g} s, {:.4g} rpm", rows[r][0], to_rpm(rows[r][1]))});
   a.series.push_back(std::move(s));
-  if (gap > 0) {
-    plot::Series circle;
-    circle.label = "clearance";
-    circle.style = {plot::ink, plot::Dash::dashed, 1.0};
-    for (int k = 0; k <= 120; ++k) {
-      circle.x.push_back(unit.factor * gap * std::cos(two_pi * k / 120));
-      circle.y.push_back(unit.factor * gap * std::sin(two_pi * k / 120));
-    }
-    a.series.push_back(std::move(circle));
-  }
   plot::Figure f;
-  f.name = step_ + "_" + safe_name(probe.name) + "_centreline";
-  f.title = probe.name + ": path of the shaft's centre";
   f.width = 560;
   f.height = 520;
+  if (path < 0.2 * gap) {  // the path alone beside it, or nobody could read it
+    plot::Axes whole = a;
+    whole.notes.clear();
+    whole.legend = a.legend = false;
+    whole.title = "within the clearance";
+    whole.series.push_back(circle_of(gap, unit.factor));
+    a.title = "enlarged";
+    f.columns = 2;
+    f.width = 860;
+    f.height = 460;
+    f.axes.push_back(std::move(whole));
+  } else
+    a.series.push_back(circle_of(gap, unit.factor));
+  f.name = step_ + "_" + safe_name(probe.name) + "_centreline";
+  f.title = probe.name + ": path of the shaft's centre";
   f.axes.push_back(std::move(a));
   end.section.figures.push_back(std::move(f));
 }

@@ -139,7 +139,7 @@ plot::Figure DeflectedLine::figure(const std::string& step) const {
   const double size = std::max(lateral, largest_of(x_));
   row("lateral displacement", {y_, z_}, "m", std::max(1e-9 * lateral, 1e-15));
   row("axial displacement", {x_}, "m", std::max(1e-6 * size, 1e-15));
-  row("twist from the left end", {phi_}, "rad", std::max(1e-9 * largest_of(phi_), 1e-13));
+  row("twist from the left end", {phi_}, "rad", 1e-9);
   f.height = 110.0 + 200.0 * static_cast<double>(std::max<std::size_t>(f.axes.size(), 1));
   return f;
 }

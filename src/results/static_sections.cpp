@@ -155,7 +155,7 @@ void add_rows(plot::Figure& f, const run::Job& job, std::size_t line,
     of_unit[rows[r].unit] = std::max(of_unit[rows[r].unit], largest[r]);
   }
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (!(largest[r] > 1e-9 * of_unit[rows[r].unit])) continue;
+    if (!(largest[r] > 1e-6 * of_unit[rows[r].unit])) continue;  // nothing one could read
     std::vector<plot::Series> shown;
     for (const auto& [label, value] : rows[r].curves) {
       plot::Series s = curve_of(label);

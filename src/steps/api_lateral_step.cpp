@@ -440,7 +440,7 @@ void SetReport::add_clearances(const PlacedMode& mode, const model::Step& of,
                {"share", "%", "of the diametral clearance"}};
   plot::Axes axes;
   axes.x = plot::Axis("speed", "rpm");
-  axes.y = plot::Axis("scaled response, peak to peak, of the clearance", "%");
+  axes.y = plot::Axis("share of the clearance, peak to peak", "%");
   axes.y.include_zero = true;
   double worst = -1;
   std::size_t worst_at = 0;

@@ -218,7 +218,8 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   const std::string known = fmt::format(
       "at each stiffness counted by inertia at {} speeds: none is missing but pairs that come and "
       "go "
-      "between two of them; lines between the stiffnesses are paired by shape, not counted",
+      "between two of them; lines between the stiffnesses are paired by shape and order, not "
+      "counted",
       o.critical.grid + 1);
   s.summary()["certificate"]["text"] = known;
   s.summary()["certificate"]["counted at each stiffness"] = true;

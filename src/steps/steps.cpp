@@ -94,13 +94,13 @@ io::Table station_table(const run::Job& job) {
   t.title = "Stations";
   t.columns = {{"shaft", "-", ""},
                {"s", "m", "from the left end of the shaft"},
-               {"outer diameter", "m", ""},
+               {"outer diameter", "mm", ""},
                {"node", "-", ""},
                {"station", "-", "sections, and what is attached there"}};
   for (const meshes::Station& s : job.mesh.stations) {
     if (s.labels.empty()) continue;
     const auto line = static_cast<std::size_t>(s.line);
-    t.add({job.mesh.lines[line].name, s.s, 2 * job.mesh.radius(job.model, line, s.s),
+    t.add({job.mesh.lines[line].name, s.s, 2e3 * job.mesh.radius(job.model, line, s.s),
            static_cast<int>(s.at.node), s.label()});
   }
   return t;

@@ -378,8 +378,60 @@ std::vector<double> borders_at(const model::VibrationZones& z, double Omega) {
   return out;
 }
 
-/// Zone of every probe where it comes nearest to the borders, over the operating speeds; the borders
-/// into its figure.
+/// The zones over the operating speeds in the figures of the probes: green, yellow, orange, red up to
+/// the one that the response reaches, which the axis shows whole if it is not the last.
+void color_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
+                 const model::UnbalanceStep& law) {
+  const double factor = s.job.model.output.peak_to_peak ? 1.0 : 0.5;
+  std::vector<double> speeds;
+  for (const SteadyPoint& x : r.points)
+    if (x.Omega >= law.operating[0] && x.Omega <= law.operating[1]) speeds.push_back(x.Omega);
+  if (speeds.size() < 2) return;
+  for (plot::Figure& f : s.section.figures) {
+    if (!f.name.ends_with("_bode")) continue;
+    plot::Axes& a = f.axes.front();
+    const double unit = a.y.unit == "m" ? 1 : a.y.unit == "mm" ? 1e3 : a.y.unit == "nm" ? 1e9 : 1e6;
+    double top = 0;
+    for (const plot::Series& line : a.series)
+      for (const double y : line.y)
+        top = std::isfinite(y) ? std::max(top, y) : top;
+    const auto border = [&](double Omega, std::size_t k) {
+      return unit * factor * borders_at(*law.zones, Omega)[k];
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double b = border(speeds.front(), k); b >= top) {
+        top = b;
+        break;
+      }
+    a.y.min = 0;
+    a.y.max = 1.12 * top;
+    const auto [low, high] = std::minmax_element(
+        r.points.begin(), r.points.end(),
+        [](const SteadyPoint& p, const SteadyPoint& q) { return p.Omega < q.Omega; });
+    a.x.min = to_rpm(low->Omega);
+    a.x.max = to_rpm(high->Omega);
+    constexpr std::array<int, 4> colors{2, 4, 1, 6};
+    for (std::size_t k = 0; k < 4; ++k) {
+      plot::Patch zone;
+      zone.label = fmt::format("zone {}", static_cast<char>('A' + k));
+      zone.tooltip = zone.label + " after " + law.zones->source;
+      zone.style = {colors[k], plot::Dash::solid, 0.0};
+      zone.fill_opacity = 0.16;
+      const auto add = [&](double Omega, double y) {
+        zone.x.push_back(to_rpm(Omega));
+        zone.y.push_back(std::min(y, a.y.max));
+      };
+      for (const double Omega : speeds)
+        add(Omega, k == 0 ? 0.0 : border(Omega, k - 1));
+      if (zone.y.front() >= a.y.max && zone.y.back() >= a.y.max) break;
+      for (auto Omega = speeds.rbegin(); Omega != speeds.rend(); ++Omega)
+        add(*Omega, k == 3 ? infinity : border(*Omega, k));
+      a.patches.push_back(std::move(zone));
+    }
+  }
+}
+
+/// Zone of every probe where it comes nearest to the borders, over the operating speeds.
 void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
                const std::vector<analysis::ResponseProbe>& probes,
                const model::UnbalanceStep& law) {
@@ -419,24 +471,7 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
     s.summary()["zones"][probes[p].name] = zone;
   }
   s.add_table("zones", std::move(t));
-  const double factor = s.job.model.output.peak_to_peak ? 1.0 : 0.5;
-  for (plot::Figure& f : s.section.figures) {
-    if (!f.name.ends_with("_bode")) continue;
-    plot::Axes& a = f.axes.front();
-    const double unit = a.y.unit == "m" ? 1 : a.y.unit == "mm" ? 1e3 : a.y.unit == "nm" ? 1e9 : 1e6;
-    constexpr const char* names[] = {"A/B", "B/C", "C/D"};
-    for (std::size_t k = 0; k < 3; ++k) {
-      plot::Series line;
-      line.label = names[k];
-      line.style = {plot::ink, plot::Dash::dashed, 1.0};
-      for (const SteadyPoint& x : r.points) {
-        if (x.Omega < law.operating[0] || x.Omega > law.operating[1]) continue;
-        line.x.push_back(to_rpm(x.Omega));
-        line.y.push_back(unit * factor * borders_at(*law.zones, x.Omega)[k]);
-      }
-      a.series.push_back(std::move(line));
-    }
-  }
+  color_zones(s, r, law);
 }
 
 /// Unbalances of each shaft, added without regard to their angles, against a balance grade.

@@ -77,7 +77,10 @@ def faults_of_axes(axes):
 
 def faults_of_texts(root):
     texts = [(t.text, box_of(t)) for t in root.iter(SVG + "text") if t.text]
+    width, height = (float(v) for v in root.get("viewBox").split()[2:])
     for i, (a, box) in enumerate(texts):
+        if min(box.x0, box.y0, width - box.x1, height - box.y1) < -1:
+            yield f"text leaves the figure: '{a}'"
         for b, other in texts[i + 1:]:
             if box.overlaps(other):
                 yield f"texts overlap: '{a}' and '{b}'"

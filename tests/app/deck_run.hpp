@@ -1,6 +1,7 @@
 // A deck run by the program as a user would, in a folder of its own that goes with the object.
 #pragma once
 #include "../io/read_json.hpp"
+#include "figure_faults.hpp"
 
 #include <gtest/gtest.h>
 #include <io/value.hpp>
@@ -130,6 +131,9 @@ struct DeckRun {
     std::ostringstream text;
     text << std::ifstream(folder / "log.txt").rdbuf();
     log = text.str();
+    // whatever a test looks at, its figures can be read
+    for (const std::string& fault : figure_faults(folder / "r" / "plots"))
+      ADD_FAILURE() << fault;
   }
 };
 

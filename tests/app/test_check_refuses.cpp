@@ -104,6 +104,14 @@ TEST_F(CheckRefuses, WhatRunRefuses) {
              "\"ida\", dt = \"1 us\" }\n")},
       {"an earlier run that is not there", "E91",
        rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nprevious = \"nowhere\"\n")},
+      {"orders of the speed of a shaft that stands", "E26",
+       rotor(
+           "[[shaft]]\nname = \"casing\"\nrotating = false\nmaterial = \"steel\"\ncolumns = "
+           "[\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"c\", 300, 60]]\n[[bearing]]\nat = "
+           "\"c:start\"\ntype = \"rigid\"\ndirections = [\"x\", \"y\", \"z\", \"rx\", \"ry\", "
+           "\"rz\"]\n[[step]]\ntype = \"api_torsional\"\noperating_speed = [\"1000 rpm\", \"1100 "
+           "rpm\"]\n[[step.torque]]\nname = \"pulsation\"\nat = \"c:end\"\norder = 1\namplitude = "
+           "\"10 N.m\"\n")},
       {"a stability map of a parameter that nothing uses", "E89",
        rotor(linear +
              "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"3000 rpm\", "

@@ -201,6 +201,21 @@ TEST(Convert, RefusesWhatMakesNoShaft) {
   EXPECT_EQ(refusal("[1, 2"), "E92 this is not JSON");
 }
 
+// Whether it is there or not: the way to its text is told.
+TEST(Convert, AWorkbookIsToBeSavedAsText) {
+  for (const char* name : {"rotor.xlsx", "ROTOR.XLS", "rotor.ods"}) {
+    try {
+      convert::convert_file(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& e) {
+      const std::string said = e.diagnostics().front().hint;
+      EXPECT_NE(said.find("CSV"), std::string::npos) << said;
+      EXPECT_NE(said.find("soffice"), std::string::npos) << said;
+      EXPECT_NE(said.find(name), std::string::npos) << said;
+    }
+  }
+}
+
 TEST(Convert, StationsOfASpreadsheet) {
   const Converted c = convert::convert_csv(
       "Station;Length (in);OD (in);ID (in);Weight (lb);Ip (lb.in^2);It (lb.in^2);Remark\n"

@@ -6,6 +6,7 @@
 #include <core/types.hpp>
 
 #include <complex>
+#include <tuple>
 
 namespace {
 
@@ -87,9 +88,9 @@ TEST(Figures, AnOrbitOfFewRowsIsDots) {
   }
 }
 
-// Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
-TEST(Figures, EveryShaftHasItsKeyphasor) {
-  const std::string two = R"([[shaft]]
+namespace {
+
+const std::string two = R"([[shaft]]
 name = "other"
 origin = ["0 mm", "1 m", "0 m"]
 speed_ratio = 1.5
@@ -126,6 +127,11 @@ at = "other/0 mm"
 type = "speed"
 speed = "4500 rpm"
 )";
+
+}  // namespace
+
+// Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
+TEST(Figures, EveryShaftHasItsKeyphasor) {
   std::string deck = lateral_mass(m, "0 m/s^2", springs + two) +
                      driven("3000 rpm", "duration = \"1 s\"\nstart = \"rest\"\n");
   const std::size_t one = deck.find("[shaft]");
@@ -142,6 +148,36 @@ speed = "4500 rpm"
   EXPECT_NEAR(other.at("Q.y 1X [m]"), radius_at(150 * pi), 1e-9);
   EXPECT_NEAR(other.at("Q 1X forward [m]"), radius_at(150 * pi), 1e-9);
   EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "machine.svg"));
+}
+
+// The one shakes the other through a spring: of its 1X nothing is left in what the other keyphasor
+// sees, and the vectors of a steady motion stand still.
+TEST(Figures, KeyphasorsLeaveTheOtherShaftOut) {
+  const std::string coupled = R"([[bearing]]
+name = "between"
+at = "mass"
+to = "mass 2"
+type = "linear"
+kyy = "3e5 N/m"
+kzz = "3e5 N/m"
+)";
+  std::string deck = lateral_mass(m, "0 m/s^2", springs + two + coupled) +
+                     driven("3000 rpm", "duration = \"1.2 s\"\nstart = \"rest\"\n");
+  deck.replace(deck.find("[shaft]"), 7, "[[shaft]]");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  // 2x2: each is shaken by its own unbalance at its own speed, and by the other's at the other's
+  for (const auto& [file, probe, rpm] : {std::tuple{"t_rotor_tracking.csv", "P.y 1X [m]", 3000.0},
+                                         std::tuple{"t_tracking.csv", "Q.y 1X [m]", 4500.0}}) {
+    const double Omega = rpm * pi / 30, between = 3e5;
+    const std::complex<double> own(k + between - m * Omega * Omega, c * Omega);
+    const double expected = std::abs(1e-3 * Omega * Omega * own / (own * own - between * between));
+    const test::Columns t = run.csv(file);
+    const std::size_t column = t.column(probe), n = t.rows.size();
+    ASSERT_GT(n, 30u);
+    for (std::size_t r = n - 20; r < n - 6; ++r)
+      EXPECT_NEAR(t.rows[r][column], expected, 1e-5 * expected) << file << " " << r;
+  }
 }
 
 TEST(Figures, ClearancesOfARubInResponseAndTransient) {
@@ -179,4 +215,30 @@ TEST(Figures, AReplayIsKeptWhereADeckWantsIt) {
     EXPECT_LT(report.size(), 700000u);
     EXPECT_EQ(fs::exists(run.folder / "r" / "plots" / "t_replay.svg"), wanted);
   }
+}
+
+// Zone A reaches 4800 um/sqrt(rpm) peak to peak: 37.9 um 0 to peak at 4000 rpm. A small response is
+// shown within it; a large one through all of them.
+TEST(Figures, ZonesColourTheResponse) {
+  const auto bode = [](const char* unbalance) {
+    std::string deck = lateral_mass(m, "0 m/s^2", springs);
+    deck.replace(deck.find("1 kg.mm"), 7, unbalance);
+    const DeckRun run(deck + R"([[step]]
+name = "u"
+type = "unbalance_response"
+speed = { start = "2000 rpm", stop = "6000 rpm", points = 41 }
+operating_speed = ["4000 rpm", "5000 rpm"]
+[step.zones]
+)");
+    EXPECT_EQ(run.exit, 0) << run.log;
+    return text_of(run.folder / "r" / "plots" / "u_P_bode.svg");
+  };
+  const std::string small = bode("10 g.mm"), large = bode("1 kg.mm");
+  EXPECT_NE(small.find(">zone A<"), std::string::npos);
+  EXPECT_EQ(small.find(">zone C<"), std::string::npos);
+  const std::size_t range = small.find("data-y=\"") + 8;
+  const double top = std::stod(small.substr(small.find(' ', range)));
+  EXPECT_NEAR(top, 1.12 * 2400 / std::sqrt(4000.0), 1e-9 * top);
+  for (const char* zone : {">zone A<", ">zone B<", ">zone C<", ">zone D<"})
+    EXPECT_NE(large.find(zone), std::string::npos) << zone;
 }

@@ -389,6 +389,51 @@ directions = ["y", "z"]
   EXPECT_EQ(level, 2) << run.log;
 }
 
+// A stiffness between the supports that differs in y and z: modes turn forward at some stiffnesses
+// and backward at others, and keep their line. At the highest stiffness the speeds are those of
+// rigid supports.
+TEST(CriticalMap, LinesAreWholeWhateverWayTheyTurn) {
+  const std::string seal = two_supports + R"([[bearing]]
+name = "seal"
+at = "a:end"
+type = "linear"
+kyy = "6e6 N/m"
+kzz = "2e6 N/m"
+)";
+  std::string deck = map_deck(seal, "bearings = [\"A\", \"B\"]\n");
+  deck.replace(deck.find("points = 4"), 10, "points = 17");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns t = run.csv("map_critical_map.csv");
+  ASSERT_GE(t.names.size(), 4u) << run.log;
+  std::size_t most = 0;
+  for (const auto& row : t.rows) {
+    std::size_t here = 0;
+    for (std::size_t j = 1; j < row.size(); ++j)
+      here += !std::isnan(row[j]);
+    most = std::max(most, here);
+  }
+  EXPECT_EQ(most, t.names.size() - 1);  // no line takes over from another
+  for (std::size_t j = 1; j < t.names.size(); ++j) {
+    bool ended = false;
+    double last = 0;
+    for (std::size_t i = 0; i < t.rows.size(); ++i) {
+      const double speed = t.rows[i][j];
+      if (std::isnan(speed)) {
+        ended = ended || last > 0;
+        continue;
+      }
+      EXPECT_FALSE(ended) << t.names[j] << " comes back at " << t.rows[i][0];
+      EXPECT_GE(speed, last * (1 - 1e-9)) << t.names[j];
+      // K0 + k B grows by no more than k
+      if (last > 0) {
+        EXPECT_LE(speed, last * std::sqrt(t.rows[i][0] / t.rows[i - 1][0]) * (1 + 1e-9));
+      }
+      last = speed;
+    }
+  }
+}
+
 // Numbers within a kind: "torsional 1" is the first torsional mode, wherever it stands in the list.
 TEST(ModeNumbers, CountWithinTheirKind) {
   const auto start = [](const std::string& keys) {

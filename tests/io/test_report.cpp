@@ -104,6 +104,55 @@ TEST(Report, TablesHaveUnitsAndDigitsThatSuit) {
         << part << html.substr(html.find("<caption"), 900);
 }
 
+// On paper a table is as wide as its numbers; what a page cannot take is set smaller. Units are
+// printed as one writes them.
+TEST(Report, WideTablesFitThePage) {
+  const auto html_of = [](std::size_t columns) {
+    Table t;
+    t.columns = {{"bearing", "-", ""}};
+    std::vector<Table::Cell> row{"DE"};
+    for (std::size_t k = 0; k < columns; ++k) {
+      t.columns.push_back({"inflow", "m^3/s", ""});
+      row.emplace_back(1.2345e-5);
+    }
+    t.rows.push_back(row);
+    Report r;
+    r.sections = {{"one", "", {t}, {}, {}}};
+    return render_report(r);
+  };
+  const std::string narrow = html_of(3), wide = html_of(20);
+  EXPECT_EQ(narrow.find("--print:"), std::string::npos);
+  const std::size_t at = wide.find("--print:");
+  ASSERT_NE(at, std::string::npos);
+  const double size = std::stod(wide.substr(at + 8));
+  EXPECT_GT(size, 3);
+  // "1.2345x10^-5" has eleven letters of 0.58 em and 0.75 em of air
+  EXPECT_LE(size * 20 * (11 * 0.58 + 0.75), 510);
+  EXPECT_NE(narrow.find("<small>m³/s</small>"), std::string::npos);
+}
+
+TEST(Report, WideTablesLeaveEmptyColumnsOut) {
+  const auto html_of = [](std::size_t columns) {
+    Table t;
+    for (std::size_t k = 0; k < columns; ++k)
+      t.columns.push_back({"column " + std::to_string(k), "-", ""});
+    for (int row = 0; row < 3; ++row) {
+      std::vector<Table::Cell> cells(columns, Table::Cell(1.0));
+      cells[2] = Table::Cell(nan);
+      if (row == 1) cells[3] = Table::Cell(nan);
+      t.rows.push_back(std::move(cells));
+    }
+    Report r;
+    r.sections = {{"one", "", {t}, {}, {}}};
+    return render_report(r);
+  };
+  const std::string narrow = html_of(5), wide = html_of(12);
+  EXPECT_NE(narrow.find(">column 2<"), std::string::npos);
+  EXPECT_EQ(wide.find(">column 2<"), std::string::npos);
+  for (const char* kept : {">column 1<", ">column 3<", ">column 11<"})
+    EXPECT_NE(wide.find(kept), std::string::npos) << kept;
+}
+
 TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   Report r;
   const plot::Figure f = gallery().front();

@@ -100,6 +100,80 @@ TEST(Drawing, LimitsLeaveTheSameAirOnBothSides) {
   EXPECT_NEAR(5 - constant.y[0], constant.y[1] - 5, 1e-12);
 }
 
+// A curve all over the frame leaves no place for a legend; a line along the diagonal does.
+TEST(Drawing, LegendsLieOnNoCurve) {
+  const auto legend_of = [](const Drawn& d) {
+    return numbers_of(between(d.svg, "<g class=\"legend\"><rect", "/>"));  // rx, x, y, ...
+  };
+  plot::Axes loops = axes({}, {});  // to and fro all over the frame
+  for (int k = 0; k <= 200; ++k) {
+    loops.series[0].x.push_back(0.05 * k);
+    loops.series[0].y.push_back(k % 2 == 0 ? -5 : 5);
+  }
+  const Drawn full(loops);
+  EXPECT_GE(legend_of(full).at(1), full.box[0] + full.box[2]);
+  const Drawn free(axes({0, 1}, {0, 1}));
+  EXPECT_LT(legend_of(free).at(1), free.box[0] + free.box[2]);
+}
+
+// Names of places along a shaft: the curve below them keeps clear of every row of them.
+TEST(Drawing, NamesStandAboveTheData) {
+  plot::Axes a = axes({0, 0.5, 1}, {0, 10, 0});
+  const Drawn bare(a);
+  for (const double x : {0.45, 0.46, 0.47, 0.48})
+    a.rules.push_back({true, x, "a long name"});
+  const Drawn named(a);
+  double lowest = 0;
+  for (std::size_t at = named.svg.find("data-lock=\"y\""); at != std::string::npos;
+       at = named.svg.find("data-lock=\"y\"", at + 1))
+    lowest = std::max(lowest, std::stod(attribute(named.svg.substr(at), "y")));
+  EXPECT_GT(lowest, named.box[1] + 4 * 14 - 6);  // four rows
+  EXPECT_GT(named.py(10), lowest);
+  EXPECT_EQ(named.y[0], bare.y[0]);
+}
+
+TEST(Drawing, ColoursThatComeAgainAreDashed) {
+  plot::Axes a = axes({0, 1}, {0, 0});
+  for (int k = 1; k < 18; ++k) {
+    plot::Series s = a.series[0];
+    s.y = {0, double(k)};
+    a.series.push_back(s);
+  }
+  const Drawn d(a);
+  std::vector<std::string> dashes;
+  for (std::size_t at = d.svg.find("<path data-s="); at != std::string::npos;
+       at = d.svg.find("<path data-s=", at + 1))
+    dashes.push_back(attribute(d.svg.substr(at, d.svg.find("/>", at) - at), "stroke-dasharray"));
+  ASSERT_EQ(dashes.size(), 18u);
+  EXPECT_EQ(dashes[7], "");
+  EXPECT_NE(dashes[8], "");
+  EXPECT_NE(dashes[16], "");
+  EXPECT_NE(dashes[16], dashes[8]);
+}
+
+// Ticks of the frame as it stands: wider labels than those of a first guess still leave the title
+// of the axis in the figure.
+TEST(Drawing, TitlesOfAxesStayInTheFigure) {
+  for (const double top : {1.0, 0.75, 1.5, 12.5, 99.0, 1234.0}) {
+    plot::Figure f;
+    f.name = "f";
+    for (int k = 0; k < 3; ++k) {
+      f.axes.push_back(axes({0, 1}, {-top, top}));
+      f.axes.back().weight = k == 0 ? 1.8 : 1;
+      f.axes.back().equal_aspect = k == 2;
+    }
+    const std::string svg = plot::render_svg(f);
+    std::size_t titles = 0;
+    for (std::size_t at = svg.find("data-label=\"y\""); at != std::string::npos;
+         at = svg.find("data-label=\"y\"", at + 1)) {
+      const std::size_t text = svg.rfind("<text", at);
+      EXPECT_GE(std::stod(attribute(svg.substr(text), "x")), 0.72 * 12.5) << top;
+      ++titles;
+    }
+    EXPECT_EQ(titles, 3u);
+  }
+}
+
 TEST(Drawing, CurvesAndTicksStandWhereTheirValuesBelong) {
   for (const bool log : {false, true}) {
     const std::vector<double> x{0, 2, 3, 8}, y{1, 30, 4, 90};

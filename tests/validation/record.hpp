@@ -15,7 +15,8 @@ class Record {
  public:
   /// case_name: heading of the manual. source: where the reference values come from.
   Record(const char* case_name, const char* source) {
-    text_ = std::string("# ") + case_name + "\n> " + source + "\n";
+    for (const char* part : {"# ", case_name, "\n> ", source, "\n"})
+      text_ += part;
   }
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;

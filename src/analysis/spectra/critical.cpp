@@ -324,7 +324,8 @@ namespace {
 struct MapPoint {
   struct Entry {
     Critical critical;
-    MatXc space;  ///< shapes of all critical speeds here, this one first
+    MatXc space;             ///< shapes of all critical speeds here, this one first
+    double forwardness = 0;  ///< of the space: 0 where it holds the mirror image of the shape
     Index line = -1;
   };
   std::unique_ptr<system::System> system;
@@ -353,6 +354,12 @@ double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
   return std::abs(product.dot(la::ColumnSpan<Complex>(gram).coordinates(product))) / size;
 }
 
+/// Ways to call a line continued.
+constexpr double alike = 0.6;            ///< share of a shape that is sure
+constexpr double nearly_same = 0.9;      ///< the same, of lines that change places
+constexpr double slack = 0.02;           ///< of the bounds of a speed: supports may depend on it
+constexpr double hardly_forward = -0.5;  ///< forwardness of what turns backward
+
 class MapTracker {
  public:
   MapTracker(const std::function<system::System(double)>& build, const CriticalMapOptions& options)
@@ -370,8 +377,13 @@ class MapTracker {
       MapPoint next = std::move(points[i % batch]);
       if (i > 0) advance(k[i - 1], k[i], next, 4);
       number(next);
-      for (const MapPoint::Entry& e : next.entries)
-        lines_[static_cast<std::size_t>(e.line)].speed[i] = e.critical.speed;
+      for (const MapPoint::Entry& e : next.entries) {
+        Followed& l = lines_[at(e.line)];
+        l.line.speed[i] = e.critical.speed;
+        l.forwardness += e.forwardness;
+        l.most = std::max(l.most, e.forwardness);
+        ++l.points;
+      }
       last_ = std::move(next);
     }
     return finish();
@@ -381,6 +393,12 @@ class MapTracker {
   struct Pair {
     double score, like;
     std::size_t old, now;
+  };
+  struct Followed {
+    CriticalMapLine line;
+    double forwardness = 0;  ///< sum
+    double most = -1;        ///< of them
+    int points = 0;
   };
 
   MapPoint solve(double stiffness) const {
@@ -394,6 +412,7 @@ class MapTracker {
     MotionReduction motion(*p.system, options_.critical.motion);
     p.matrices = motion.reduce(linear.conservative_at(options_.critical.max_speed));
     for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!wanted(all[i].mode)) continue;
       MapPoint::Entry e;
       e.critical = all[i];
       std::vector<std::size_t> group{i};
@@ -402,69 +421,92 @@ class MapTracker {
       e.space.resize(all[i].mode.x.size(), static_cast<Index>(group.size()));
       for (std::size_t j = 0; j < group.size(); ++j)
         e.space.col(static_cast<Index>(j)) = all[group[j]].mode.x;
-      if (!wanted(all, i, p.matrices, e.space)) continue;
-      if (options_.forward_only && e.critical.mode.direction == Direction::backward)
-        e.critical.mode.direction = Direction::forward;  // as turns_forward() says
+      // without gyroscopic effect the shapes of a double root are any two motions of their plane:
+      // with a shape its mirror image is there, which turns the other way
+      const bool mirrored =
+          share_in(p.matrices, e.critical.mode.x.conjugate(), e.space) > 1.0 - 1e-6;
+      e.forwardness = mirrored ? 0.0 : e.critical.mode.forwardness;
       p.entries.push_back(std::move(e));
     }
     return p;
   }
 
-  /// Without gyroscopic effect the shapes of a double root are any two motions of their plane, be
-  /// they found as backward both: with a shape its mirror image is there, which turns forward.
-  static bool turns_forward(const WhirlMode& mode, const la::MCK& matrices, const MatXc& space) {
-    return mode.direction != Direction::backward ||
-           share_in(matrices, mode.x.conjugate(), space) > 1.0 - 1e-6;
-  }
-
-  bool wanted(const std::vector<Critical>& all, std::size_t i, const la::MCK& matrices,
-              const MatXc& space) const {
-    const WhirlMode& m = all[i].mode;
-    const Motion motion = options_.critical.motion;
-    if (motion == Motion::lateral && m.kind != ModeKind::lateral) return false;
-    if (motion == Motion::torsional && m.kind != ModeKind::torsional) return false;
-    if (motion == Motion::axial && m.kind != ModeKind::axial) return false;
-    if (!options_.forward_only || m.kind != ModeKind::lateral) return true;
-    if (!turns_forward(m, matrices, space)) return false;
-    // without gyroscopic effect both planes have the same speed: one line
-    for (std::size_t j = 0; j < i; ++j)
-      if (same_speed(all[j], all[i]) && all[j].mode.kind == ModeKind::lateral &&
-          turns_forward(all[j].mode, matrices, space))
-        return false;
+  bool wanted(const WhirlMode& m) const {
+    switch (options_.critical.motion) {
+      case Motion::lateral: return m.kind == ModeKind::lateral;
+      case Motion::torsional: return m.kind == ModeKind::torsional;
+      case Motion::axial: return m.kind == ModeKind::axial;
+      case Motion::all: break;
+    }
     return true;
   }
 
-  /// Pairs of the last point with the next; whether every one of them is sure.
-  bool pair(const MapPoint& next, std::vector<Pair>& taken) const {
+  /// Whether a line may go from the one critical speed to the other while the stiffness grows:
+  /// K0 + k B grows by no more than k itself does.
+  static bool may_become(const Critical& a, const Critical& b, double growth) {
+    return b.speed >= a.speed * (1.0 - slack) &&
+           b.speed <= a.speed * std::sqrt(growth) * (1.0 + slack);
+  }
+
+  /// Pairs of the last point with the next, at a stiffness `growth` times as large; whether nothing
+  /// stayed in doubt.
+  bool pair(const MapPoint& next, double growth, std::vector<Pair>& taken) const {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < last_.entries.size(); ++i)
       for (std::size_t j = 0; j < next.entries.size(); ++j) {
         const Critical& a = last_.entries[i].critical;
         const Critical& b = next.entries[j].critical;
-        if ((a.mode.direction == Direction::backward) != (b.mode.direction == Direction::backward))
-          continue;
         const double like = share_in(next.matrices, a.mode.x, next.entries[j].space);
+        if (like < alike) continue;
+        // of several at one speed the one whose own shape it is
+        const double own = share_in(next.matrices, a.mode.x, next.entries[j].space.col(0));
         const double apart = std::abs(a.speed - b.speed) / (a.speed + b.speed);
-        if (like >= 0.05) pairs.push_back({like - 0.5 * apart, like, i, j});
+        pairs.push_back({like - 0.5 * apart + 1e-3 * own, like, i, j});
       }
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.score > b.score; });
-    std::vector<unsigned char> old_taken(last_.entries.size(), 0),
-        now_taken(next.entries.size(), 0);
-    bool sure = true;
+    Marks old_taken(last_.entries.size(), 0), now_taken(next.entries.size(), 0);
     for (const Pair& p : pairs) {
       if (old_taken[p.old] || now_taken[p.now]) continue;
       old_taken[p.old] = now_taken[p.now] = 1;
       taken.push_back(p);
-      sure = sure && p.like >= 0.6;
     }
-    return sure;
+    const auto swaps = [&](const Pair& p) {
+      return p.like < nearly_same && std::any_of(taken.begin(), taken.end(), [&](const Pair& q) {
+               return (p.old < q.old) != (p.now < q.now) && p.old != q.old;
+             });
+    };
+    const std::size_t sure = taken.size();
+    const bool changes = std::any_of(taken.begin(), taken.end(), swaps);
+    pair_by_order(next, growth, old_taken, now_taken, taken);
+    return !changes && taken.size() == sure;
+  }
+
+  using Marks = std::vector<unsigned char>;
+  /// What is left, from below.
+  void pair_by_order(const MapPoint& next, double growth, const Marks& old_taken,
+                     const Marks& now_taken, std::vector<Pair>& taken) const {
+    std::size_t i = 0, j = 0;
+    while (i < last_.entries.size() && j < next.entries.size()) {
+      const Critical& a = last_.entries[i].critical;
+      const Critical& b = next.entries[j].critical;
+      if (old_taken[i])
+        ++i;
+      else if (now_taken[j])
+        ++j;
+      else if (may_become(a, b, growth))
+        taken.push_back({0, 0, i++, j++});
+      else if (b.speed < a.speed)  // it comes from below the speeds looked at
+        ++j;
+      else
+        ++i;
+    }
   }
 
   /// Hands the lines of last_, at stiffness a, on to `next`, at b.
   void advance(double a, double b, MapPoint& next, int halvings) {
     std::vector<Pair> pairs;
-    if (!pair(next, pairs) && halvings > 0) {
+    if (!pair(next, b / a, pairs) && halvings > 0) {
       const double middle = std::sqrt(a * b);
       MapPoint between = solve(middle);
       advance(a, middle, between, halvings - 1);
@@ -482,35 +524,56 @@ class MapTracker {
     for (MapPoint::Entry& e : p.entries) {
       if (e.line >= 0) continue;
       e.line = static_cast<Index>(lines_.size());
-      lines_.push_back({e.critical.mode.kind, e.critical.mode.direction,
-                        std::vector<double>(options_.stiffness.size(), nan)});
+      Followed l;
+      l.line.kind = e.critical.mode.kind;
+      l.line.speed.assign(options_.stiffness.size(), nan);
+      lines_.push_back(std::move(l));
     }
+  }
+
+  /// Two planes without gyroscopic effect.
+  static bool same_line(const CriticalMapLine& a, const CriticalMapLine& b) {
+    if (a.kind != ModeKind::lateral || b.kind != ModeKind::lateral) return false;
+    for (std::size_t i = 0; i < a.speed.size(); ++i)
+      if (std::isnan(a.speed[i]) != std::isnan(b.speed[i]) ||
+          std::abs(a.speed[i] - b.speed[i]) > 1e-9 * b.speed[i])
+        return false;
+    return true;
+  }
+
+  static std::ptrdiff_t first(const CriticalMapLine& l) {
+    return std::find_if(l.speed.begin(), l.speed.end(), [](double x) { return !std::isnan(x); }) -
+           l.speed.begin();
   }
 
   CriticalMap finish() {
     CriticalMap map;
     map.stiffness = options_.stiffness;
-    const auto first = [](const CriticalMapLine& l) {
-      return std::find_if(l.speed.begin(), l.speed.end(), [](double x) { return !std::isnan(x); }) -
-             l.speed.begin();
-    };
-    for (CriticalMapLine& l :
-         lines_)  // met between the stiffnesses asked for alone: nothing to show
-      if (first(l) < static_cast<std::ptrdiff_t>(l.speed.size())) map.lines.push_back(std::move(l));
-    std::stable_sort(map.lines.begin(), map.lines.end(),
-                     [&](const CriticalMapLine& a, const CriticalMapLine& b) {
-                       const auto i = first(a), j = first(b);
-                       return i != j ? i < j
-                                     : a.speed[static_cast<std::size_t>(i)] <
-                                           b.speed[static_cast<std::size_t>(j)];
-                     });
+    for (Followed& f : lines_) {
+      if (f.points == 0) continue;  // met between the stiffnesses asked for alone
+      CriticalMapLine& l = f.line;
+      const bool lateral = l.kind == ModeKind::lateral;
+      l.forwardness = f.forwardness / f.points;
+      const bool second = std::any_of(map.lines.begin(), map.lines.end(),
+                                      [&](const CriticalMapLine& o) { return same_line(o, l); });
+      if (options_.forward_only && lateral && (second || f.most < hardly_forward)) continue;
+      if (lateral && (second || l.forwardness < 0)) l.direction = Direction::backward;
+      map.lines.push_back(std::move(l));
+    }
+    std::stable_sort(
+        map.lines.begin(), map.lines.end(), [](const CriticalMapLine& a, const CriticalMapLine& b) {
+          const auto i = first(a), j = first(b);
+          return i != j
+                     ? i < j
+                     : a.speed[static_cast<std::size_t>(i)] < b.speed[static_cast<std::size_t>(j)];
+        });
     return map;
   }
 
   const std::function<system::System(double)>& build_;
   const CriticalMapOptions& options_;
   MapPoint last_;
-  std::vector<CriticalMapLine> lines_;
+  std::vector<Followed> lines_;
 };
 
 }  // namespace

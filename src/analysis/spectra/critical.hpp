@@ -76,22 +76,26 @@ std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions&
 /// Undamped critical speeds against the stiffness of the supports. build: the system with that
 /// stiffness (N/m) in its supports, the same nodes at every stiffness.
 ///
-/// From one stiffness to the next the critical speeds are paired by shape: |projection|^2 on the
-/// other one's modes in the metric of the mass, less half the relative distance of the speeds, best
-/// pairs first. Where two shapes are less than 0.6 alike a stiffness in between is put in (down to
-/// 1/16 of the step on a logarithmic scale).
+/// From one stiffness to the next the critical speeds are paired by shape, whatever way they turn:
+/// |projection|^2 on the other one's modes in the metric of the mass, less half the relative
+/// distance of the speeds, best pairs first. Where two shapes are less than 0.6 alike, or lines
+/// change places whose shapes are not nearly the same, a stiffness in between is put in (down to
+/// 1/16 of the step on a logarithmic scale); what stays in doubt is paired from
+/// below: a critical speed rises with the stiffness, by no more than its root.
 struct CriticalMapOptions {
   CriticalOptions critical;
   SteadyRotation running;
   std::vector<double> stiffness;  ///< N/m, ascending
-  bool forward_only =
-      true;  ///< what unbalance can excite; false: backward ones as lines of their own
+  /// Without lines that turn backward at all their stiffnesses (forwardness below -0.5), which
+  /// unbalance hardly excites, and with one line for two planes of equal speeds.
+  bool forward_only = true;
   bool undeformed = false;  ///< Linearizer::stay_undeformed()
   int threads = 1;          ///< of the stiffnesses; 0: all processors
 };
 struct CriticalMapLine {
   ModeKind kind = ModeKind::lateral;
-  Direction direction = Direction::forward;  ///< where it was met first
+  Direction direction = Direction::forward;  ///< by the mean of forwardness; never mixed
+  double forwardness = 0;                    ///< WhirlMode::forwardness, mean of the stiffnesses
   std::vector<double> speed;  ///< rad/s, one a stiffness; nan: not between min_speed and max_speed
 };
 struct CriticalMap {

@@ -34,7 +34,8 @@ void describe(Visitor& v, model::TrackingOutput& o) {
                "speed with its phase");
   v.quantity("bandwidth", o.bandwidth, "", between(0.02, 2),
              "width of the filter at half amplitude, in multiples of the speed: a Hann window of "
-             "2/bandwidth turns about each turn (2: each turn by itself)");
+             "2/bandwidth turns about each turn (2: each turn by itself), of up to 12 where shafts "
+             "turn at different speeds, so that each keyphasor sees its own");
   v.quantities(optional("orbit_speeds", "the largest orbit alone"), o.orbit_speeds, "rpm", any, -1,
                "orbits are shown where the spin passes these speeds, beside the largest one");
   v.integer("orbit_turns", o.orbit_turns, between(1, 20), "turns an orbit shows");

@@ -1,0 +1,130 @@
+// Looks at the curves of a figure as a reader would: none leaves its axes, no axis dwarfs its data,
+// no number is none. check_figures.py looks at the texts of the examples' figures besides.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace whirl::test {
+
+class FigureCheck {
+ public:
+  explicit FigureCheck(std::string svg) : svg_(std::move(svg)) {}
+
+  std::vector<std::string> faults() {
+    for (const char* none : {"\"nan", " nan", "\"inf", " inf", "Lnan", "Mnan"})
+      if (find_outside_texts(none)) faults_.push_back("a coordinate is no number");
+    constexpr std::string_view begin = "<g class=\"axes\" data-kind=\"";
+    for (std::size_t at = svg_.find(begin); at != std::string::npos;) {
+      const std::size_t next = svg_.find(begin, at + 1);
+      const std::string_view axes =
+          std::string_view(svg_).substr(at, next == std::string::npos ? next : next - at);
+      if (axes.substr(begin.size(), 2) == "xy") look_at(axes);
+      at = next;
+    }
+    return std::move(faults_);
+  }
+
+ private:
+  static std::vector<double> numbers_of(std::string_view text) {
+    const std::string copy(text);
+    std::vector<double> out;
+    for (const char* p = copy.c_str(); *p;) {
+      char* end = nullptr;
+      const double x = std::strtod(p, &end);
+      if (end == p)
+        ++p;
+      else
+        out.push_back(x);
+      p = std::max<const char*>(p, end);
+    }
+    return out;
+  }
+  /// Of the first tag in a text; empty without it.
+  static std::string_view attribute(std::string_view tag, std::string_view name) {
+    const std::size_t at = tag.find(" " + std::string(name) + "=\"");
+    if (at == std::string_view::npos) return {};
+    const std::size_t from = at + name.size() + 3;
+    return tag.substr(from, tag.find('"', from) - from);
+  }
+  /// Within tags, not in what a reader reads or what stands for the readout.
+  bool find_outside_texts(std::string_view what) const {
+    for (std::size_t at = svg_.find(" d=\""); at != std::string::npos;
+         at = svg_.find(" d=\"", at + 1)) {
+      const std::string_view d =
+          std::string_view(svg_).substr(at + 3, svg_.find('"', at + 4) - at - 2);
+      if (d.find(what) != std::string_view::npos) return true;
+    }
+    return false;
+  }
+
+  void look_at(std::string_view axes) {
+    const std::vector<double> box = numbers_of(attribute(axes, "data-box"));
+    const std::vector<double> y = numbers_of(attribute(axes, "data-y"));
+    if (box.size() != 4 || y.size() != 3) {
+      faults_.push_back("axes without a frame or a range");
+      return;
+    }
+    const std::size_t from = axes.find("<g class=\"plot\">");
+    if (from == std::string_view::npos) return;
+    const std::string_view plot = axes.substr(from, axes.find("<g class=\"pins\">") - from);
+    std::vector<double> sizes;
+    for (std::size_t at = plot.find("<path "); at != std::string_view::npos;
+         at = plot.find("<path ", at + 1)) {
+      const std::string_view path = plot.substr(at, plot.find('>', at) - at);
+      if (attribute(path, "data-s").empty() || !attribute(path, "data-quiet").empty()) continue;
+      look_at_curve(path, box, y, sizes);
+    }
+    // bodies, bars and maps: the curves are not all there is
+    if (plot.find("<g data-s=") != std::string_view::npos || y[2] != 0 || sizes.empty()) return;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<long>(sizes.size() / 2),
+                     sizes.end());
+    const double median = sizes[sizes.size() / 2];
+    if (std::max(std::abs(y[0]), std::abs(y[1])) > 1e6 * median) {
+      std::ostringstream fault;
+      fault << "axis from " << y[0] << " to " << y[1] << ", data about " << median;
+      faults_.push_back(fault.str());
+    }
+  }
+
+  void look_at_curve(std::string_view path, const std::vector<double>& box,
+                     const std::vector<double>& y, std::vector<double>& sizes) {
+    const std::vector<double> d = numbers_of(attribute(path, "d"));
+    double beyond = 0;
+    for (std::size_t i = 0; i + 1 < d.size(); i += 2) {
+      beyond = std::max({beyond, box[0] - d[i], d[i] - box[0] - box[2], box[1] - d[i + 1],
+                         d[i + 1] - box[1] - box[3]});
+      const double size = std::abs(y[1] - (d[i + 1] - box[1]) / box[3] * (y[1] - y[0]));
+      const bool nothing = size <= 1e-9 * (y[1] - y[0]);  // of the curve's rounding
+      if (attribute(path, "data-right").empty() && !nothing) sizes.push_back(size);
+    }
+    if (beyond > 1.5)
+      faults_.push_back("curve " + std::string(attribute(path, "data-name")) +
+                        " leaves its axes by " + std::to_string(beyond) + " px");
+  }
+
+  std::string svg_;
+  std::vector<std::string> faults_;
+};
+
+/// A line for each fault of the figures in a folder; none without the folder.
+inline std::vector<std::string> figure_faults(const std::filesystem::path& folder) {
+  std::vector<std::string> out;
+  if (!std::filesystem::exists(folder)) return out;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".svg") continue;
+    std::ostringstream text;
+    text << std::ifstream(file.path()).rdbuf();
+    for (const std::string& fault : FigureCheck(text.str()).faults())
+      out.push_back(file.path().filename().string() + ": " + fault);
+  }
+  return out;
+}
+
+}  // namespace whirl::test
