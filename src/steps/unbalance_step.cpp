@@ -202,7 +202,7 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     // they only say where the grid is to be finer: found, not counted, and where modes cannot be
     // followed the tracker goes in smaller steps
     o.certify = false;
-    o.grid = 16;
+    o.grid = 8;
     o.threads = s.job.options.jobs;
     for (const analysis::Critical& c : criticals_between(s, o, low, high))
       for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
