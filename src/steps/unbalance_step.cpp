@@ -203,7 +203,7 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     // they only say where the grid is to be finer: found, not counted, and where modes cannot be
     // followed the tracker goes in smaller steps
     o.certify = false;
-    o.grid = 16;
+    o.grid = 8;
     o.threads = s.job.options.jobs;
     std::vector<double> places;
     for (const analysis::Critical& c : criticals_between(s, o, low, high))

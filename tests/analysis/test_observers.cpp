@@ -125,6 +125,36 @@ TEST(Observers, PeaksOfManyPointsShareTheirLooks) {
   }
 }
 
+// The speed at the peaks of many points is that of each by itself; where it hardly changes in a step it
+// takes three states, not five.
+TEST(Observers, SpeedsAtPeaksShareTheirLooks) {
+  Released r(6);
+  for (std::size_t i = 0; i < r.rotor.node.size(); ++i)
+    r.start.q.segment<6>(6 * r.rotor.node[i]) *= 1e-2;
+  std::vector<std::pair<std::string, analysis::Point>> named;
+  for (std::size_t i = 1; i < r.rotor.node.size(); ++i)
+    named.emplace_back("p" + std::to_string(i), analysis::Point{r.rotor.node[i], 1e-3});
+  ASSERT_GT(named.size(), 5u);
+  CountedPeaks together(named);
+  std::vector<std::unique_ptr<CountedPeaks>> alone;
+  std::vector<analysis::Observer*> observers{&together};
+  for (const auto& p : named) {
+    alone.push_back(std::make_unique<CountedPeaks>(std::vector{p}));
+    observers.push_back(alone.back().get());
+  }
+  system::SystemProblem problem(*r.system);
+  const auto result = analysis::run_transient(problem, r.start, options_of(0.01, 1e-3), observers);
+  ASSERT_EQ(result.reason, analysis::StopReason::end_time);
+  EXPECT_EQ(together.most, 3);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const analysis::Peak &all = together.tracker.peaks()[i],
+                         &one = alone[i]->tracker.peaks().front();
+    EXPECT_EQ(all.time, one.time) << i;
+    EXPECT_NEAR(all.speed, one.speed, 1e-7 * one.speed) << i;
+    EXPECT_GT(all.speed, 90.0);
+  }
+}
+
 TEST(Observers, ConservativeMotionTurnsOverItsPotentialEnergy) {
   Released r(6);
   system::SystemProblem problem(*r.system);

@@ -262,8 +262,22 @@ double PeakTracker::vertex_in(double a, double b, double x, std::size_t point) c
 double PeakTracker::spin_at(StepAccess& s, double k) {
   if (points_.size() <= static_cast<std::size_t>(spins))  // a state a peak costs no more
     return s.at(time_of(s, k)).node(reference_).spin();
-  for (int i = 0; i < spins && !spin_known_; ++i)
-    spin_[static_cast<std::size_t>(i)] = s.at(time_of(s, 2.0 * i)).node(reference_).spin();
+  const auto look_at = [&](std::size_t i) {
+    spin_[i] = s.at(time_of(s, 2.0 * static_cast<double>(i))).node(reference_).spin();
+  };
+  if (!spin_known_) {
+    for (const std::size_t i : {0u, 2u, 4u})
+      look_at(i);
+    // what nearly keeps its speed asks for no more
+    constexpr double straight = 1e-7;
+    if (std::abs(spin_[0] - 2.0 * spin_[2] + spin_[4]) <= straight * std::abs(spin_[2])) {
+      spin_[1] = 0.125 * (3.0 * spin_[0] + 6.0 * spin_[2] - spin_[4]);
+      spin_[3] = 0.125 * (3.0 * spin_[4] + 6.0 * spin_[2] - spin_[0]);
+    } else {
+      look_at(1);
+      look_at(3);
+    }
+  }
   spin_known_ = true;
   const std::array<double, spins> w = lagrange<spins>(0.5 * k);
   double spin = 0;
