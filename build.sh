@@ -2,7 +2,7 @@
 # Installs what is missing (Debian 12), builds Whirl, and runs or tests it.
 #   ./build.sh                  install + build
 #   ./build.sh run DECK [...]   ... then: whirl run DECK [...]
-#   ./build.sh test [...]       ... then: all tests but the long ones (or those that ctest arguments name: test -L long)
+#   ./build.sh test [...]       ... then: all tests but the long ones (or those that ctest arguments name: test -L long, -L hours)
 # WHIRL_NO_VTK=1 leaves VTK out; WHIRL_NO_INSTALL=1 installs nothing. Quick when there is nothing to do.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -41,7 +41,7 @@ build() {
 case "${1:-build}" in
   build) install_missing; build all ;;
   run)   shift; install_missing; build run; exec build/release/bin/whirl run "$@" ;;
-  test)  shift; [ $# -gt 0 ] || set -- -LE long
+  test)  shift; [ $# -gt 0 ] || set -- -LE 'long|hours'
          install_missing; build test; exec ctest --preset release -j "$(nproc)" "$@" ;;
   *)     sed -n '2,6p' "$0"; exit 2 ;;
 esac

@@ -397,7 +397,7 @@ force = ["0 N", "50 N", "0 N"]
       {"backward", mass_on_springs(R"([[step]]
 name = "h"
 type = "harmonic_response"
-speed = { start = "1500 rpm", stop = "3000 rpm", points = 2 }
+speed = { start = "1500 rpm", stop = "3000 rpm", points = 2, refine = "no" }
 speed_squared = true
 [[step.force]]
 at = "mass"
@@ -407,7 +407,7 @@ whirl = "backward"
       {"twist", mass_on_springs(R"([[step]]
 name = "h"
 type = "harmonic_response"
-frequency = { start = "20 Hz", stop = "40 Hz", points = 2 }
+frequency = { values = ["20 Hz", "40 Hz"] }
 [[step.force]]
 at = "mass"
 moment = ["10 N.m", "0 N.m", "0 N.m"]
