@@ -48,14 +48,16 @@ inline std::vector<double> numbers_in(const std::string& text) {
 
 struct DrawnCurve {
   std::string name;
-  std::string extra;          ///< what is read out beside it, parted by tabs
+  bool right = false;         ///< belongs to the axis on the right
   std::vector<Pixel> points;  ///< of cartesian and polar axes
 };
 
 struct DrawnAxes {
   std::string kind, x_title, y_title;  ///< xy, polar or space; "time [s]"
-  std::vector<double> box, x, y;       ///< px: left, top, width, height; limits, 1: logarithmic
-  double zero_at = 0;                  ///< deg
+  std::string right_title;
+  std::vector<double> box, x, y;  ///< px: left, top, width, height; limits, 1: logarithmic
+  std::vector<double> right;      ///< limits of the axis on the right, where there is one
+  double zero_at = 0;             ///< deg
   bool clockwise = false;
   std::vector<DrawnCurve> curves;
 
@@ -72,6 +74,10 @@ struct DrawnAxes {
     return {box[0] + box[2] / 2 + radius * std::cos(angle),
             box[1] + box[3] / 2 - radius * std::sin(angle)};
   }
+  /// On the axis of the right.
+  Pixel place_right(double px, double py) const {
+    return {place(px, y[0]).x, box[1] + box[3] * (1 - share(right, py))};
+  }
   const DrawnCurve* curve(const std::string& name) const {
     for (const DrawnCurve& c : curves)
       if (c.name == name) return &c;
@@ -85,7 +91,7 @@ inline std::string title_of(const std::string& tag, const std::string& axis) {
 }
 
 inline DrawnCurve curve_of(const std::string& tag) {
-  DrawnCurve c{attribute(tag, "data-name"), attribute(tag, "data-extra"), {}};
+  DrawnCurve c{attribute(tag, "data-name"), attribute(tag, "data-right") == "1", {}};
   std::string path = attribute(tag, "d");
   for (std::size_t dot = path.find("h0"); dot != std::string::npos; dot = path.find("h0"))
     path.erase(dot, 2);
@@ -108,6 +114,8 @@ inline std::vector<DrawnAxes> drawn(const std::filesystem::path& file) {
     a.kind = attribute(tag, "data-kind");
     a.x_title = title_of(tag, "x");
     a.y_title = title_of(tag, "y");
+    a.right_title = title_of(tag, "r");
+    a.right = numbers_in(attribute(tag, "data-r"));
     a.box = numbers_in(attribute(tag, "data-box"));
     a.x = numbers_in(attribute(tag, "data-x"));
     a.y = numbers_in(attribute(tag, "data-y"));

@@ -1,9 +1,10 @@
 // Curves of figures, read back from their files, against the tables of the same run (which
 // test_written_numbers.cpp holds against closed forms), with titles and units, and that no picture is
-// missing: of a transient, a static step, campbell, stability, critical_map and the two responses.
+// missing: of a transient, static steps, campbell, stability, critical_map and the two responses.
 // Shapes, space curves and the replay are not read here.
 #include "deck_run.hpp"
 #include "drawn.hpp"
+#include "lateral_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -82,10 +83,11 @@ std::pair<std::size_t, std::size_t> range_of(const Columns& table, Rows rows) {
 }
 
 std::vector<Pixel> line_of(const DrawnAxes& axes, const Values& x, const Values& y,
-                           std::pair<std::size_t, std::size_t> range) {
+                           std::pair<std::size_t, std::size_t> range, bool right = false) {
   std::vector<Pixel> out;
   for (std::size_t r = range.first; r < range.second; ++r)
-    if (std::isfinite(x[r]) && std::isfinite(y[r])) out.push_back(axes.place(x[r], y[r]));
+    if (std::isfinite(x[r]) && std::isfinite(y[r]))
+      out.push_back(right ? axes.place_right(x[r], y[r]) : axes.place(x[r], y[r]));
   return out;
 }
 
@@ -103,14 +105,16 @@ void expect_shown(const DeckRun& run, const Shown& s) {
   ASSERT_LT(s.axes, axes.size()) << where;
   const DrawnAxes& a = axes[s.axes];
   EXPECT_EQ(a.x_title, s.x_title) << where;
-  EXPECT_EQ(a.y_title, s.y_title) << where;
   const DrawnCurve* curve = a.curve(s.curve);
   ASSERT_TRUE(curve) << where;
+  EXPECT_EQ(curve->right ? a.right_title : a.y_title, s.y_title) << where;
   const Columns table = run.csv(s.table);
   // a response is continued without leaps of whole turns; turns that follow each other are not
   const bool angle = a.y_title == "phase lag [°]" && s.table != tracking;
   const Values x = values_of(table, s.x), y = values_of(table, s.y);
-  expect_line(*curve, line_of(a, x, angle ? unwrapped(y) : y, range_of(table, s.rows)), where);
+  expect_line(*curve,
+              line_of(a, x, angle ? unwrapped(y) : y, range_of(table, s.rows), curve->right),
+              where);
 }
 
 /// Names of the figures in a folder of results that begin so.
@@ -816,4 +820,142 @@ TEST(DrawnNumbers, OfAnalysesAreThoseOfTheirTables) {
     expect_line(*c, line_of(forces, values_of(response, speed_rpm), largest, {0, largest.size()}),
                 "force " + name);
   }
+}
+
+namespace {
+
+/// 98.1 N on a bearing, at five speeds.
+std::string sweep_of(const std::string& bearing) {
+  return test::lateral_mass(10, "9.81 m/s^2",
+                            "[[bearing]]\nname = \"b\"\nat = \"mass\"\n" + bearing + R"([[step]]
+name = "s"
+type = "static"
+speeds = { start = "500 rpm", stop = "3000 rpm", points = 5 }
+)");
+}
+
+const char* const coefficients = "s_coefficients.csv";
+
+const Shown film[] = {
+    {"s_locus",
+     0,
+     "locus",
+     coefficients,
+     "y / clearance",
+     {{"y [m]", 1 / 40e-6}},
+     "z / clearance",
+     {{"z [m]", 1 / 40e-6}}},
+    {"s_eccentricity",
+     0,
+     "eccentricity",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "eccentricity / clearance",
+     {{"eccentricity / clearance [-]", 1}}},
+    {"s_eccentricity",
+     0,
+     "attitude",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "attitude [deg]",
+     {{"attitude [deg]", 1}}},
+    {"s_stiffness",
+     0,
+     "kyy",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "stiffness [MN/m]",
+     {{"kyy [N/m]", 1e-6}}},
+    {"s_stiffness",
+     0,
+     "kyz",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "stiffness [MN/m]",
+     {{"kyz [N/m]", 1e-6}}},
+    {"s_stiffness",
+     0,
+     "kzy",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "stiffness [MN/m]",
+     {{"kzy [N/m]", 1e-6}}},
+    {"s_stiffness",
+     0,
+     "kzz",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "stiffness [MN/m]",
+     {{"kzz [N/m]", 1e-6}}},
+    {"s_damping",
+     0,
+     "cyy",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "damping [kN s/m]",
+     {{"cyy [N s/m]", 1e-3}}},
+    {"s_damping",
+     0,
+     "cyz",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "damping [kN s/m]",
+     {{"cyz [N s/m]", 1e-3}}},
+    {"s_damping",
+     0,
+     "czz",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "damping [kN s/m]",
+     {{"czz [N s/m]", 1e-3}}},
+};
+
+const Shown table_bearing[] = {
+    {"s_locus", 0, "locus", coefficients, "y [um]", {{"y [m]", 1e6}}, "z [um]", {{"z [m]", 1e6}}},
+    {"s_eccentricity",
+     0,
+     "eccentricity",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "eccentricity [um]",
+     {{"eccentricity [m]", 1e6}}},
+    {"s_eccentricity",
+     0,
+     "attitude",
+     coefficients,
+     "speed [rpm]",
+     speed_rpm,
+     "attitude [deg]",
+     {{"attitude [deg]", 1}}},
+};
+
+}  // namespace
+
+TEST(DrawnNumbers, OfBearingsAgainstSpeedAreThoseOfTheirTable) {
+  const DeckRun journal(sweep_of(
+      "type = \"short_journal\"\ndiameter = \"40 mm\"\nlength = \"16 mm\"\nclearance = \"40 um\"\n"
+      "viscosity = \"20 mPa.s\"\n"));
+  ASSERT_EQ(journal.exit, 0) << journal.log;
+  std::set<std::string> known;
+  for (const Shown& s : film) {
+    expect_shown(journal, s);
+    known.insert(s.figure);
+  }
+  EXPECT_EQ(figures_in(journal, "s_"), known);
+  const DeckRun table(sweep_of(
+      "type = \"table\"\ncolumns = [\"speed[rpm]\", \"kyy[N/m]\", \"kyz[N/m]\", \"kzy[N/m]\", "
+      "\"kzz[N/m]\"]\nrows = [[0, 1e6, 2e5, -1e5, 2e6], [4000, 3e6, 1e5, -4e5, 1e6]]\n"));
+  ASSERT_EQ(table.exit, 0) << table.log;
+  for (const Shown& s : table_bearing)
+    expect_shown(table, s);
 }
