@@ -552,7 +552,7 @@ const Elsewhere elsewhere[] = {
     {"peaks", "amplitude [rad]", "open: peaks of harmonic responses"},
     {"peaks", "mesh error of amplitude [-]", "app/test_natural_decks.cpp"},
     {"peaks", "mesh error of amplification [-]", "app/test_natural_decks.cpp"},
-    {"response", "bearing # force x [N]", "open: axial responses"},
+    {"response", "bearing # force x [N]", "app/test_held_forces.cpp"},
     {"response", "largest torque in # [N.m]", "app/test_harmonic_limits.cpp"},
     {"response", "frequency [Hz]", "app/test_direction.cpp"},
     {"rolling", "angle [deg]", "app/test_rolling_loads.cpp"},
