@@ -164,6 +164,28 @@ TEST_F(Cli, Json) {
   EXPECT_EQ(bad.at("diagnostics").items()[0].at("line").number(), 3);
 }
 
+// Each part of a message as text, as JSON.
+TEST_F(Cli, JsonTellsWhatTheMessageTells) {
+  write("bad.toml", "format = 1\n[shaft]\n  lenght = 3\n");
+  const auto told = tests::parse_json(whirl("check bad.toml --json").out);
+  const auto& d = told.at("diagnostics").items();
+  ASSERT_EQ(d.size(), 2u);
+  EXPECT_EQ(d[0].at("message").text(), "shaft 'shaft' has no sections");
+  EXPECT_EQ(d[0].at("hint").text(),
+            "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
+  EXPECT_EQ(d[0].at("column").number(), 1);
+  EXPECT_EQ(d[0].at("length").number(), 7);  // "[shaft]"
+  EXPECT_EQ(d[1].at("severity").text(), "error");
+  EXPECT_EQ(d[1].at("code").text(), "E04");
+  EXPECT_EQ(d[1].at("file").text(), "bad.toml");
+  EXPECT_EQ(d[1].at("line").number(), 3);
+  EXPECT_EQ(d[1].at("column").number(), 3);
+  EXPECT_EQ(d[1].at("length").number(), 6);  // "lenght"
+  const std::string text = whirl("check bad.toml").err;
+  EXPECT_NE(text.find("bad.toml:3:3: error[E04]: " + d[1].at("message").text()), std::string::npos)
+      << text;
+}
+
 TEST_F(Cli, ResolvedDeckChecksAndHashes) {
   write("good.toml", good);
   const Result r = whirl("check good.toml --resolved --set parameters.od='50 mm'");

@@ -329,6 +329,17 @@ const Number numbers[] = {
     {"path", "st_path.csv", -1, "P u_x [m]", 0, 1e-15, "along y alone"},
     {"path", "st_path.csv", -1, "P u_z [m]", 0, 1e-15, "along y alone"},
     {"path", "st_path.csv", -1, "P phi [rad]", 0, 1e-15, "along y alone"},
+    // w^2 = k/m - c^2/(2 m^2), F/(c sqrt(k/m - c^2/(4 m^2)))
+    {"harmonic peaks", "h_peaks.csv", 0, "frequency [Hz]", 49.87419230844, 1e-5, "of the peak"},
+    {"harmonic peaks", "h_peaks.csv", 0, "amplitude [m]", 5.294341149914966e-5, 1e-14,
+     "of the peak"},
+    // from rest: the whirl that stays and the one that dies out
+    {"orbits", "t_orbits.csv", 0, "time [s]", 0.09, 1e-9, "middle of the turn that ends at 0.1 s"},
+    {"orbits", "t_orbits.csv", 0, "y [m]", 2.676047426838e-5, 1e-12, "at 0.06 s"},
+    {"orbits", "t_orbits.csv", 0, "z [m]", -4.349437597724e-4, 1e-12, "at 0.06 s"},
+    {"orbits", "t_orbits.csv", 1, "y [m]", 1.926120942096e-4, 1e-12, "22.5 degrees on"},
+    {"orbits", "t_orbits.csv", 8, "z [m]", 4.572815465776e-4, 1e-12, "half a turn on"},
+    {"orbits", "t_orbits.csv", 32, "z [m]", -4.951705166536e-4, 1e-12, "at 0.1 s"},
     // two turns of 16 intervals
     {"orbits", "t_orbits.csv", 32, "angle [deg]", 720, 1e-9, "the 33rd point ends the second turn"},
     {"orbits", "t_orbits.csv", -1, "angle [deg]", 720, 1e-9, "and is the last"},
@@ -452,6 +463,56 @@ std::string general(std::string heading, const std::string& deck) {
   return std::regex_replace(heading, std::regex("^-?[0-9.]+ Hz"), "line");
 }
 
+/// A name or a word in a table.
+struct Word {
+  const char* deck;
+  const char* file;
+  std::size_t row;  ///< from 0
+  const char* column;
+  const char* expected;
+};
+
+const Word words[] = {
+    {"ball bearing at its node", "st_coefficients.csv", 0, "bearing [-]", "ball"},
+    {"ball bearing at its node", "st_supports.csv", 0, "support [-]", "guide"},
+    {"ball bearing at its node", "st_supports.csv", 1, "support [-]", "ball"},
+    {"arms at rest", "st_deflection.csv", 0, "shaft [-]", "h"},
+    {"arms at rest", "st_deflection.csv", 5, "shaft [-]", "s"},
+    {"arms at rest", "st_deflection.csv", 0, "station [-]", "h1:start, joint 'H'"},
+    {"arms at rest", "st_deflection.csv", 3, "station [-]", "u1:end, disk 'du', load 'load 2'"},
+    {"arms at rest", "st_joints.csv", 0, "joint [-]", "H"},
+    {"arms at rest", "st_joints.csv", 2, "joint [-]", "S"},
+    {"cantilever", "st_sections.csv", 1, "shaft [-]", "r"},
+    {"cantilever", "st_sections.csv", 4, "element [-]", "0"},
+    {"cantilever", "st_sections.csv", 5, "element [-]", "1"},
+    {"modes", "m_energy.csv", 0, "energy [-]", "strain"},
+    {"modes", "m_energy.csv", 0, "part [-]", "linear bearings"},
+    {"modes", "m_energy.csv", 1, "energy [-]", "kinetic"},
+    {"modes", "m_energy.csv", 1, "part [-]", "rigid disks"},
+    {"modes", "m_energy.csv", 0, "from [-]", "node at 0.1 m of shaft 'rotor'"},
+    {"modes", "m_energy.csv", 0, "to [-]", ""},
+    {"laden rectangle", "m_energy.csv", 1, "from [-]", "node at 0.0625 m of shaft 'r'"},
+    {"laden rectangle", "m_energy.csv", 1, "to [-]", "node at 0.125 m of shaft 'r'"},
+    {"events", "t_events.csv", 0, "event [-]", "five"},
+    {"events", "t_events.csv", 0, "passage [-]", "rising"},
+    {"operated above the peak", "u_margins.csv", 0, "probe [-]", "P"},
+    {"operated above the peak", "u_margins.csv", 0, "result [-]", "passed"},
+    {"operated at the peak", "u_margins.csv", 0, "result [-]", "FAILED"},
+    {"orbits", "t_orbits.csv", 0, "probe [-]", "P"},
+    {"harmonic peaks", "h_peaks.csv", 0, "probe [-]", "P"},
+};
+
+/// Cells of a CSV file, headings first.
+std::vector<std::vector<std::string>> cells_of(const std::filesystem::path& csv) {
+  std::vector<std::vector<std::string>> out;
+  std::ifstream in(csv);
+  for (std::string line; std::getline(in, line);) {
+    out.push_back(whirl::test::Columns::cells_of(line));
+    if (line.ends_with(',')) out.back().emplace_back();  // the last cell is empty
+  }
+  return out;
+}
+
 struct Elsewhere {
   const char* kind;
   const char* heading;
@@ -464,7 +525,6 @@ const Elsewhere elsewhere[] = {
     {"coefficients", "Sommerfeld number [-]", "app/test_support_decks.cpp, test_step_speeds.cpp"},
     {"coefficients", "eccentricity / clearance [-]",
      "app/test_support_decks.cpp, test_step_speeds.cpp"},
-    {"coefficients", "bearing [-]", "open: a name"},
     {"coefficients", "grid error [-]", "app/test_static_speeds.cpp"},
     {"critical_speeds", "direction [-]", "app/test_direction.cpp"},
     {"critical_speeds", "kind [-]", "app/test_direction.cpp"},
@@ -479,37 +539,21 @@ const Elsewhere elsewhere[] = {
     {"onset", "above this speed [-]", "app/test_spectra.cpp"},
     {"modes", "forwardness [-]", "app/test_direction.cpp"},
     {"modes", "label [-]", "app/test_direction.cpp"},
-    {"deflection", "shaft [-]", "open: names"},
-    {"deflection", "station [-]", "open: names"},
     {"deflection", "u_x [m]", "app/test_keys_matter.cpp"},
-    {"energy", "energy [-]", "above, as text"},
-    {"energy", "part [-]", "above, as text"},
-    {"energy", "from [-]", "open: places"},
-    {"energy", "to [-]", "open: places"},
     {"energy_parts", "kinetic: shaft [%]", "open: shares of a flexible shaft"},
     {"energy_parts", "strain: shaft [%]", "open: shares of a flexible shaft"},
     {"equilibria", "proved [-]", "app/test_static_stability.cpp"},
-    {"events", "event [-]", "open: names"},
-    {"events", "passage [-]", "open: names"},
     {"history", "energy.gravity [J]", "app/test_energy_balance.cpp"},
     {"map_onset", "remark [-]", "open: words"},
-    {"margins", "probe [-]", "open: words"},
-    {"margins", "result [-]", "open: words"},
-    {"orbits", "probe [-]", "open: a name"},
-    {"orbits", "time [s]", "open: the orbit itself"},
-    {"orbits", "y [m]", "open: the orbit itself"},
-    {"orbits", "z [m]", "open: the orbit itself"},
-    {"peaks", "probe [-]", "open: a name"},
     {"peaks", "amplitude 0-peak [m]", "the examples in tests/CMakeLists.txt, from the summary"},
     {"peaks", "motion 0-peak [m]", "app/test_figures.cpp"},
     {"peaks", "motion at [s]", "app/test_figures.cpp"},
     {"peaks", "time [s]", "the examples in tests/CMakeLists.txt, from the summary"},
     {"peaks", "amplitude [rad]", "open: peaks of harmonic responses"},
-    {"peaks", "frequency [Hz]", "open: peaks of harmonic responses"},
     {"peaks", "mesh error of amplitude [-]", "app/test_natural_decks.cpp"},
     {"peaks", "mesh error of amplification [-]", "app/test_natural_decks.cpp"},
-    {"response", "bearing # force x [N]", "open: twisting and axial responses"},
-    {"response", "largest torque in # [N.m]", "open: twisting and axial responses"},
+    {"response", "bearing # force x [N]", "app/test_held_forces.cpp"},
+    {"response", "largest torque in # [N.m]", "app/test_harmonic_limits.cpp"},
     {"response", "frequency [Hz]", "app/test_direction.cpp"},
     {"rolling", "angle [deg]", "app/test_rolling_loads.cpp"},
     {"rolling", "bearing [-]", "app/test_rolling_loads.cpp"},
@@ -619,10 +663,6 @@ const Elsewhere elsewhere[] = {
     {"rolling_stiffness", "per x [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
     {"rolling_stiffness", "per y [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
     {"rolling_stiffness", "per z [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
-    {"sections", "element [-]", "open: names"},
-    {"sections", "shaft [-]", "open: names"},
-    {"joints", "joint [-]", "open: a name"},
-    {"supports", "support [-]", "open: a name"},
     {"tracking", "#.y 2X lag [deg]", "analysis/test_postprocess.cpp"},
     {"tracking", "#.z 2X lag [deg]", "analysis/test_postprocess.cpp"},
     {"tracking", "#.y envelope [m]", "analysis/test_postprocess.cpp"},
@@ -642,10 +682,22 @@ TEST(WrittenNumbers, EveryColumnIsReadByATest) {
   for (const Elsewhere& e : elsewhere)
     read.insert({e.kind, e.heading});
   const auto decks = whirl::test::written_decks();
+  const auto reads = [&](const auto& x) {
+    read.insert({general(kind_of(x.file), decks.at(x.deck)), general(x.column, decks.at(x.deck))});
+  };
   for (const Number& n : numbers)
-    read.insert({general(kind_of(n.file), decks.at(n.deck)), general(n.column, decks.at(n.deck))});
+    reads(n);
+  for (const Word& w : words)
+    reads(w);
   for (const auto& [name, deck] : decks) {
     const DeckRun run(deck);
+    for (const Word& w : words) {
+      if (w.deck != name) continue;
+      const auto cells = cells_of(run.folder / "r" / w.file);
+      ASSERT_LT(w.row + 1, cells.size()) << name << " " << w.file;
+      const std::size_t c = run.csv(w.file).column(w.column);
+      EXPECT_EQ(cells[w.row + 1].at(c), w.expected) << name << ", " << w.file << ", " << w.column;
+    }
     for (const auto& entry : std::filesystem::directory_iterator(run.folder / "r"))
       if (entry.path().extension() == ".csv")
         for (const std::string& heading : run.csv(entry.path().filename()).names)

@@ -404,6 +404,15 @@ at = "mass"
 force = ["0 N", "100 N", "0 N"]
 whirl = "backward"
 )")},
+      {"harmonic peaks", mass_on_springs(R"([[step]]
+name = "h"
+type = "harmonic_response"
+frequency = { start = "20 Hz", stop = "80 Hz", points = 13 }
+[[step.force]]
+at = "mass"
+force = ["5 N", "10 N", "0 N"]
+moment = ["10 N.m", "0 N.m", "0 N.m"]
+)")},
       {"twist", mass_on_springs(R"([[step]]
 name = "h"
 type = "harmonic_response"

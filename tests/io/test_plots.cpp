@@ -401,6 +401,36 @@ TEST(MachineShape, AllLinesHaveOneScaleAndMoveByTheirMotion) {
   }
 }
 
+// Lines at their places in space, in mm; the largest motion is drawn as 14 % of the machine's size.
+TEST(MachineShape, LinesStandAtTheirPlacesAndMoveAlongTheirAxes) {
+  plot::MachineShape m;
+  const std::vector<Vec3> origins{{0, 0, 0}, {0, 0.5, -0.25}};
+  for (std::size_t l = 0; l < 2; ++l) {
+    plot::ShapeLine line{l == 0 ? "rotor" : "casing", {}, {}, {}};
+    for (const double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      line.rest.push_back(origins[l] + Vec3(x, 0, 0));
+      const double size = l == 0 ? 1e-6 * x : 0.5e-6;  // 5e-6 at most
+      line.u.push_back({0.0, Complex(3 * size, 0), Complex(4 * size, 0)});
+    }
+    line.stations = {0, 4};
+    m.lines.push_back(std::move(line));
+  }
+  const plot::Figure f = plot::plot_machine_shape("m", "m", m);
+  std::size_t found = 0;
+  for (const plot::SpaceSeries& s : f.axes.at(0).space)
+    for (std::size_t l = 0; l < 2; ++l) {
+      if (s.label != (l == 0 ? "rotor" : "casing") || s.x.size() != 5) continue;
+      ++found;
+      for (std::size_t i = 0; i < 5; ++i) {
+        const double x = 0.25 * static_cast<double>(i), part = l == 0 ? x : 0.5;
+        EXPECT_NEAR(s.x[i], 1e3 * x, 1e-9) << l;
+        EXPECT_NEAR(s.y[i], 1e3 * origins[l].y() + 140 * 0.6 * part, 1e-9) << l;
+        EXPECT_NEAR(s.z[i], 1e3 * origins[l].z() + 140 * 0.8 * part, 1e-9) << l;
+      }
+    }
+  EXPECT_EQ(found, 2u);
+}
+
 TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
   for (const bool log : {false, true}) {
     plot::Figure f;

@@ -5,6 +5,7 @@
 #include <core/plugin.hpp>
 #include <io/file.hpp>
 #include <io/results.hpp>
+#include <io/table_file.hpp>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -349,6 +350,27 @@ TEST(Table, NumbersTextAndQuotes) {
       read_text(dir / "deep/er/tables/modes.csv"),
       "\"mode, damped\",frequency [Hz]\n\"1st \"\"forward\"\"\",0.30000000000000004\n2nd,12\n");
   EXPECT_EQ(read_csv(dir / "deep/er/tables/modes.csv")["frequency"][0], 0.1 + 0.2);
+}
+
+// What the Python module reads: numbers of every column, words of those that have any.
+TEST(Table, ReadBackWithItsWords) {
+  TempFolder dir;
+  write_atomic(dir / "words.csv", "s [m],place [-],load [N]\n0.5,left,-2\n1.5,\"a, b\",3e4\n");
+  const TableFile words = read_table(dir / "words.csv");
+  ASSERT_EQ(words.columns.size(), 3u);
+  EXPECT_EQ(words.rows(), 2u);
+  EXPECT_EQ(words.columns[0].name, "s");
+  EXPECT_EQ(words.columns[0].unit, "m");
+  EXPECT_EQ(words.columns[0].numbers, (std::vector<double>{0.5, 1.5}));
+  EXPECT_TRUE(words.columns[0].texts.empty());  // numbers alone
+  EXPECT_EQ(words.columns[1].texts, (std::vector<std::string>{"left", "a, b"}));
+  EXPECT_TRUE(std::isnan(words.columns[1].numbers[0]));
+  EXPECT_EQ(words.columns[2].numbers, (std::vector<double>{-2, 3e4}));
+  write_atomic(dir / "numbers.csv", "t [s],y [m]\n0,1\n1,2\n");
+  const TableFile numbers = read_table(dir / "numbers.csv");
+  for (const TableFile::Column& c : numbers.columns)
+    EXPECT_TRUE(c.texts.empty()) << c.name;
+  EXPECT_EQ(numbers.columns[1].numbers, (std::vector<double>{1, 2}));
 }
 
 TEST(Json, KeepsOrderAndDigits) {

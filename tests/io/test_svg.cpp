@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <plot/plots.hpp>
 #include <plot/svg.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <regex>
@@ -279,6 +280,62 @@ TEST(Drawing, TheUprightAxisOfASpaceIsNamedUpright) {
     const std::string head = svg.substr(svg.rfind('<', at), at - svg.rfind('<', at));
     EXPECT_EQ(head.find("rotate(-90") != std::string::npos, std::string(name) == "up") << head;
   }
+}
+
+// The same air on both sides of data in space, limits where they are given, points where they belong.
+TEST(Drawing, PointsOfASpaceStandWhereTheirValuesBelong) {
+  for (const bool fixed : {false, true})
+    for (const bool equal : {false, true}) {
+      plot::Axes a;
+      a.kind = plot::AxesKind::space;
+      a.equal_aspect = equal;
+      a.x = plot::Axis("x", "-");
+      a.y = plot::Axis("y", "-");
+      a.z = plot::Axis("z", "-");
+      if (fixed) {
+        a.y.min = -5;
+        a.y.max = 7;
+      }
+      plot::SpaceSeries s;
+      s.x = {0, 4, 10};
+      s.y = {-2, 1, 3};
+      s.z = {1, 2.5, 2};
+      a.space.push_back(s);
+      plot::Figure f;
+      f.name = "f";
+      f.axes.push_back(a);
+      const std::string svg = plot::render_svg(f);
+      const std::string head = between(svg, "<g class=\"axes\"", ">");
+      const std::vector<double> half = numbers_of(attribute(head, "data-half"));
+      ASSERT_EQ(half.size(), 3u);
+      const std::vector<double> xyz =
+          numbers_of(attribute(between(svg, "<path data-s=\"0\"", "/>"), "data-xyz"));
+      ASSERT_EQ(xyz.size(), 9u);
+      const std::vector<double>* data[] = {&s.x, &s.y, &s.z};
+      double length[3];
+      for (std::size_t d = 0; d < 3; ++d) {
+        const std::vector<double> limits =
+            numbers_of(attribute(head, std::string("data-") + "xyz"[d]));
+        ASSERT_EQ(limits.size(), 3u);
+        length[d] = limits[1] - limits[0];
+        const auto [low, high] = std::minmax_element(data[d]->begin(), data[d]->end());
+        if (d == 1 && fixed) {
+          EXPECT_EQ(limits[0], -5);
+          EXPECT_EQ(limits[1], 7);
+        } else {
+          EXPECT_LT(limits[0], *low);
+          EXPECT_NEAR(*low - limits[0], limits[1] - *high, 1e-12);
+          EXPECT_LT(length[d], 1.2 * (*high - *low));
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+          EXPECT_NEAR(xyz[3 * i + d], half[d] * (2 * ((*data[d])[i] - limits[0]) / length[d] - 1),
+                      1e-4)
+              << d;
+      }
+      if (!equal) continue;
+      for (const std::size_t d : {1, 2})  // one unit of length for all
+        EXPECT_NEAR(half[d] / half[0], length[d] / length[0], 1e-4);
+    }
 }
 
 // The highest line of a Campbell diagram is below its upper edge, the lines of order end there.

@@ -15,11 +15,12 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   FrequencyPoint p;
   p.Omega = Omega;
   p.frequency = w;
-  VecXc a = VecXc::Zero(linear_.system().size());
+  VecXc force = VecXc::Zero(linear_.system().size()), a = force;
   for (const HarmonicForce& f : options_.forces)
-    a[f.unknown] += scale * f.amplitude;
+    force[f.unknown] += scale * f.amplitude;
   if (solver_.prepare(Omega, w)) {
-    linear_.system().reduce(linear_.equilibrium().state, a);
+    linear_.system().reduce(linear_.equilibrium().state, force);
+    a = force;
     solver_.solve(a);
   } else {
     a.setConstant(Complex(nan, nan));  // undamped resonance met exactly
@@ -28,7 +29,7 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
     p.probe.push_back(amplitude_at(linear_, a, probe.point));
   for (Index k : options_.unknowns)
     p.unknown.push_back(a[k]);
-  if (meter_) meter_->measure(a, w, options_.outputs, p.output);
+  if (meter_) meter_->measure(a, force, w, options_.outputs, p.output);
   if (options_.shapes) p.shape = std::move(a);
   return p;
 }

@@ -236,14 +236,21 @@ PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Poin
   return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
 }
 
+bool DrivenProblem::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
+  if (!SystemProblem::residual(t, q, v, a, r)) return false;
+  r -= force;
+  return true;
+}
+
 VariationMeter::VariationMeter(Linearizer& linear)
     : linear_(linear),
       problem_(linear.system()),
       snapshot_(problem_) {}
 
-void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what,
+void VariationMeter::measure(const VecXc& a, const VecXc& force, double w,
+                             const std::vector<Measurement>& what,
                              std::vector<std::vector<Complex>>& out) {
-  WHIRL_EXPECTS(a.size() == linear_.system().size());
+  WHIRL_EXPECTS(a.size() == linear_.system().size() && force.size() == a.size());
   const system::State& s = linear_.equilibrium().state;
   problem_.frames = s.frames;
   system::Context& context = problem_.workspace().context;
@@ -259,8 +266,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
       std::fill(values.begin(), values.end(), Complex(nan, nan));
     return;
   }
-  const double eps = variation_step(a);
-  if (eps == 0.0) return;
+  const double step = variation_step(a), eps = step == 0.0 ? 1.0 : step;  // held: its force alone
   std::vector<double> value;
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
@@ -270,6 +276,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
     for (int sign : {1, -1}) {
       const double h = sign * eps;
       const VecX q1 = s.q + h * q, v1 = s.v + h * v, a1 = s.a + h * acc;
+      problem_.force = h * (turn * force).real();
       snapshot_.set(s.t, q1, v1, a1);
       for (std::size_t m = 0; m < what.size(); ++m) {
         value.resize(what[m].width());

@@ -73,19 +73,29 @@ struct PointAmplitude {
 /// @pre a of length system().size(), p on one of its nodes.
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
 
+/// A system on which forces act that none of its terms gives: held unknowns pass them on.
+class DrivenProblem final : public system::SystemProblem {
+ public:
+  using SystemProblem::SystemProblem;
+  VecX force;  ///< of each unknown, N and N m
+  bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
+};
+
 /// Complex amplitudes of anything that can be measured on the system (bearing forces, torques,
 /// velocities): its exact first variation along a, by central differences about the equilibrium.
 /// The measurement must be smooth there.
 class VariationMeter {
  public:
   explicit VariationMeter(Linearizer& linear);
-  /// @pre a of length system().size().
-  void measure(const VecXc& a, double w, const std::vector<Measurement>& what,
+  /// a: the response to `force`, amplitudes of the unknowns, N and N m: where a support holds the
+  /// unknown it acts on, it is that support's load.
+  /// @pre a and force of length system().size().
+  void measure(const VecXc& a, const VecXc& force, double w, const std::vector<Measurement>& what,
                std::vector<std::vector<Complex>>& out);
 
  private:
   Linearizer& linear_;
-  system::SystemProblem problem_;
+  DrivenProblem problem_;
   Snapshot snapshot_;
 };
 

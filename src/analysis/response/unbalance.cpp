@@ -61,6 +61,13 @@ VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
   return motion.amplitude[1];
 }
 
+VecXc UnbalanceSolver::force_of(std::size_t order, double Omega) {
+  // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs the
+  // phase backward
+  const VecXc& f = linear_.forcing()[order];
+  return Omega < 0 ? VecXc(-f.conjugate()) : VecXc(-f);
+}
+
 SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
   SteadyPoint p;
   p.Omega = Omega;
@@ -80,9 +87,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
       if (Omega < 0) a = a.conjugate().eval();
       linear_.system().complete(linear_.equilibrium().state, a);
     } else if (solver_.prepare(Omega, w)) {
-      // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs
-      // the phase backward
-      a = Omega > 0 ? VecXc(-linear_.forcing()[k]) : VecXc(-linear_.forcing()[k].conjugate());
+      a = force_of(k, Omega);
       solver_.solve(a);
     } else {
       a = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
@@ -92,7 +97,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
       p.probe.back().push_back(amplitude_at(linear_, a, probe.point));
     if (meter_ && with_outputs) {
       p.output.emplace_back();
-      meter_->measure(a, w, options_.outputs, p.output.back());
+      meter_->measure(a, force_of(k, Omega), w, options_.outputs, p.output.back());
     }
     if (options_.shapes) p.shape.push_back(std::move(a));
   }

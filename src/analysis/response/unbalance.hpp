@@ -97,6 +97,8 @@ class UnbalanceSolver {
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;
+  /// What an order of the speed drives the unknowns with.
+  VecXc force_of(std::size_t order, double Omega);
   /// Of a rotor that breathes: amplitude of the speed itself, the others into p.
   VecXc breathe(double Omega, SteadyPoint& p);
   void put_multiple(const VecXc& a, SteadyPoint& p) const;
