@@ -8,11 +8,11 @@
 namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
-  static constexpr Option refine[] = {
-      {"peaks",
-       "unbalance response: more points where the response peaks (default of a range, not of "
-       "speeds one by one)"},
-      {"no", "the points alone"}};
+  static constexpr Option refine[] = {{"peaks",
+                                       "unbalance and harmonic responses: more points where the "
+                                       "response peaks (default of a range, not of "
+                                       "speeds one by one)"},
+                                      {"no", "the points alone"}};
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
   const bool stop =
       v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
