@@ -560,6 +560,14 @@ const std::vector<CodeInfo>& error_catalogue() {
        "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
        "response and a stability step are computed in axes that turn with the shaft and show both.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
+      {"W15", "a response that is not refined",
+       "The points of a response over a range are made finer about natural frequencies or critical "
+       "speeds, and these could not be found (a table that does not reach them, a mode that was "
+       "lost). The response is right at the points asked for; a peak between two of them may be "
+       "missed. More points help, or tables that cover the range.",
+       "[[step]]\ntype = \"harmonic_response\"\nfrequency = { start = \"10 Hz\", stop = \"200 "
+       "Hz\", "
+       "points = 2000 }"},
       {"W20", "left out or assumed in a conversion",
        "What another program's file says and a deck has no word for, or what a deck needs and the "
        "file does not say. The same list stands at the head of the deck.",

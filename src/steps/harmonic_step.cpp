@@ -296,7 +296,13 @@ void HarmonicRun::add_resonances() {
   if (!range || !(grid_.front() < grid_.back())) return;
   const run::PhaseTimer timer(job_, asynchronous_ ? "natural frequencies" : "critical speeds");
   const double low = grid_.front(), high = grid_.back();
-  for (const double x : asynchronous_ ? resonances_by_frequency() : resonances_by_speed())
+  std::vector<double> places;
+  try {
+    places = asynchronous_ ? resonances_by_frequency() : resonances_by_speed();
+  } catch (const Error& e) {
+    warn_of_coarse_points(s_, e);
+  }
+  for (const double x : places)
     if (x > low && x < high) grid_.push_back(x);
   sort_apart(grid_);
 }

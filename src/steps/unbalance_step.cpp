@@ -206,8 +206,12 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     o.grid = 8;
     o.threads = s.job.options.jobs;
     std::vector<double> places;
-    for (const analysis::Critical& c : criticals_between(s, o, low, high))
-      add_places_about(c.speed, c.mode.damping_ratio, places);
+    try {
+      for (const analysis::Critical& c : criticals_between(s, o, low, high))
+        add_places_about(c.speed, c.mode.damping_ratio, places);
+    } catch (const Error& e) {
+      warn_of_coarse_points(s, e);
+    }
     for (const double Omega : places)
       if (Omega > low && Omega < high) speeds.push_back(Omega);
   }
