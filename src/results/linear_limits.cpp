@@ -67,15 +67,23 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
   if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one())
     axes.emplace(s.linear, speeds.back());
   for (const double Omega : speeds) {
-    const std::string growth = axes ? growth_at(*axes, Omega) : growth_at(solver, Omega);
-    if (growth.empty()) continue;
     Diagnostic d;
     d.code = "W13";
-    d.message = fmt::format(
-        "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never reached "
-        "there",
-        s.step.name, to_rpm(Omega), growth);
-    d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
+    try {
+      const std::string growth = axes ? growth_at(*axes, Omega) : growth_at(solver, Omega);
+      if (growth.empty()) continue;
+      d.message = fmt::format(
+          "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never "
+          "reached there",
+          s.step.name, to_rpm(Omega), growth);
+      d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
+    } catch (const Error& e) {
+      // modes below a table that reaches the excitation
+      if (e.diagnostics().front().code != "E81") throw;
+      d.message = fmt::format("step '{}': whether free motions grow at {:.6g} rpm is not known: {}",
+                              s.step.name, to_rpm(Omega), e.diagnostics().front().message);
+      d.hint = "extend the frequencies of the table, or write extrapolate = \"hold\"";
+    }
     warn(s.job, std::move(d));
     return;
   }

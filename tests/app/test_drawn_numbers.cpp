@@ -434,7 +434,7 @@ TEST(DrawnNumbers, OfATransientAreThoseOfItsTables) {
   for (std::size_t r = 0; r < y.size(); ++r)
     radius[r] = std::hypot(y[r] - y[0], z[r] - z[0]);
   const DrawnAxes amplitude = test::drawn(run.folder / "r/plots/t_P_amplitude.svg").at(0);
-  EXPECT_EQ(amplitude.y_title, "orbit radius about the place at the start, 0-peak [mm]");
+  EXPECT_EQ(amplitude.y_title, "radius about the start, 0-peak [mm]");
   for (const Rows part : {Rows::rising, Rows::falling}) {
     const DrawnCurve* c = amplitude.curve(part == Rows::rising ? "speed rising" : "speed falling");
     ASSERT_TRUE(c);

@@ -268,7 +268,7 @@ TEST_F(Sweep, NumbersInHdf5AreThoseOfTheTable) {
 
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   const std::string response = " --response c_undamped:speed";
-  for (const std::string arguments :
+  for (const std::string& arguments :
        {std::string(" --vary disk.disk.mass=2kg:4kg:3"),
         " --vary disk.disk.mass=2kg" + response + " --shard 3/2", response,
         " --vary disk.disk.mass=2kg,3kg --sampling best" + response})
