@@ -37,7 +37,7 @@ foreach(component ${components})
   list(APPEND targets whirl_${component})
   # sundials, hdf5 and vtk are what the plug-ins alone see
   install(DIRECTORY ${folder}/ DESTINATION include/whirl/${component} COMPONENT development
-          FILES_MATCHING PATTERN "*.hpp" PATTERN visitor_overrides.inl PATTERN spin.inl
+          FILES_MATCHING PATTERN "*.hpp" PATTERN visitor_overrides.inl PATTERN spin.inl PATTERN film_condense.inl
           PATTERN sundials EXCLUDE PATTERN hdf5 EXCLUDE PATTERN vtk EXCLUDE)
 endforeach()
 install(TARGETS ${targets} EXPORT whirl-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
