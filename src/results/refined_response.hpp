@@ -33,8 +33,8 @@ struct PeakError {
 /// The error that the elements leave of a peak: 4/3 of its change on the mesh twice as fine, which is
 /// right where it falls with the square of their length, and too large where it falls faster. Both
 /// peaks are those of a parabola through 1/size^2 at three places about the one found, which is exact
-/// for a single resonance: a peak that moves is compared with itself. at: where it was found, rad/s;
-/// amplification: of it (NaN: not known).
+/// for a single resonance: a peak that moves is compared with itself. A peak that nothing damps is not
+/// judged. at: where it was found, rad/s; amplification: of it (NaN: not known).
 PeakError peak_error(double at, double amplification, const std::function<double(double)>& own,
                      const std::function<double(double)>& refined);
 

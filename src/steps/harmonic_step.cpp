@@ -2,13 +2,11 @@
 // at an order of the speed.
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/search.hpp>
-#include <analysis/spectra/critical.hpp>
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/refined_response.hpp>
 #include <run/progress.hpp>
-#include <steps/criticals_between.hpp>
 #include <steps/resonances.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/parallel.hpp>
@@ -150,10 +148,8 @@ class HarmonicRun {
   FrequencyPoint respond(double x) { return respond(responder_, x); }
   FrequencyPoint respond(Responder& responder, double x) const;
   double speed_at(double x) const { return asynchronous_ ? law_.speed : x; }
-  /// Resonances and places about them, so that no peak is too sharp for the grid. Sorted into it.
-  void add_resonances();
-  std::vector<double> resonances_by_frequency();
-  std::vector<double> resonances_by_speed();
+  /// So that no peak is too sharp for it.
+  void refine_grid();
   void solve_grid();
   /// Points first .. last - 1 of the grid on a linearisation of their own. equilibria: theirs, or
   /// empty where all stand at one speed.
@@ -182,6 +178,7 @@ class HarmonicRun {
   };
   void list_maxima(std::size_t probe, std::vector<Found>& out) const;
   void find_peak(Found& x) const;
+  void put_largest(const std::vector<Found>& peaks);
   /// What the elements leave of the peaks, or of the largest amplitude where there is none.
   std::vector<double> judge_amplitudes(const std::vector<Found>& peaks);
   BothSpins options_on(const results::RefinedModel& refined) const;
@@ -255,56 +252,30 @@ void HarmonicRun::solve_points(std::size_t first, std::size_t last,
   }
 }
 
-/// Where nothing damps, the response at the resonance itself is rounding.
-bool is_damped(const analysis::WhirlMode& m) { return std::abs(m.damping_ratio) > 1e-7; }
-
-std::vector<double> HarmonicRun::resonances_by_frequency() {
-  analysis::ModesOptions o;
-  o.count = 0;
-  o.max_frequency = grid_.back();
-  o.motion = results::motion_of(law_.motion);
-  o.certify = false;
-  o.continued = true;
-  std::vector<double> out;
-  for (const analysis::WhirlMode& m : analysis::whirl_modes(s_.linear, law_.speed, o)) {
-    if (!is_damped(m)) continue;
-    add_places_about(m.frequency, m.damping_ratio, out);
-    // coefficients of a frequency leave the decay out: the resonance may be much sharper
-    if (m.continued != m.lambda)
-      add_places_about(std::abs(m.continued.imag()),
-                       std::abs(m.continued.real()) / std::abs(m.continued), out);
+Driven driven_by(const results::FrequencyStep& s, const std::vector<model::HarmonicForce>& forces) {
+  constexpr double rounding = 1e-12;
+  Driven out;
+  for (const model::HarmonicForce& f : forces) {
+    const analysis::Point p = results::point_of(s.job, f.at);
+    const Vec3 e = s.linear.equilibrium().state.frames.axes(p.node).col(0);
+    const auto along = [&](const Vec3& v) { return std::abs(e.dot(v)) > rounding * v.norm(); };
+    const auto across = [&](const Vec3& v) { return e.cross(v).norm() > rounding * v.norm(); };
+    out.lateral = out.lateral || across(f.force) || across(f.moment);
+    out.torsional = out.torsional || along(f.moment);
+    out.axial = out.axial || along(f.force);
   }
   return out;
 }
 
-std::vector<double> HarmonicRun::resonances_by_speed() {
-  analysis::CriticalOptions o;
-  o.order = law_.order;
-  o.damped = true;
-  o.motion = results::motion_of(law_.motion);
-  o.certify = false;
-  o.grid = 16;
-  o.threads = job_.options.jobs;
-  std::vector<double> out;
-  for (const analysis::Critical& c : criticals_between(s_, o, grid_.front(), grid_.back()))
-    if (is_damped(c.mode)) add_places_about(c.speed, c.mode.damping_ratio, out);
-  return out;
-}
-
-void HarmonicRun::add_resonances() {
+void HarmonicRun::refine_grid() {
   const bool range = asynchronous_ ? law_.frequency->values.empty() : law_.speeds->refine_peaks;
-  if (!range || !(grid_.front() < grid_.back())) return;
+  if (!range) return;
   const run::PhaseTimer timer(job_, asynchronous_ ? "natural frequencies" : "critical speeds");
-  const double low = grid_.front(), high = grid_.back();
-  std::vector<double> places;
-  try {
-    places = asynchronous_ ? resonances_by_frequency() : resonances_by_speed();
-  } catch (const Error& e) {
-    warn_of_coarse_points(s_, e);
-  }
-  for (const double x : places)
-    if (x > low && x < high) grid_.push_back(x);
-  sort_apart(grid_);
+  const analysis::Motion motion = results::motion_of(law_.motion);
+  if (asynchronous_)
+    refine_at_frequencies(s_, motion, driven_by(s_, law_.forces), law_.speed, grid_);
+  else
+    refine_at_criticals(s_, motion, driven_by(s_, law_.forces), law_.order, grid_);
 }
 
 // Equilibria one after the other, responses side by side. What a thread gets at a time depends on
@@ -414,12 +385,10 @@ void HarmonicRun::add_peaks() {
   io::Value& v = s_.summary();
   v["points"] = points_.size();
   std::vector<Found> found;
-  for (std::size_t p = 0; p < options_.probes.size(); ++p) {
-    const char* what = twists_ ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]";
-    v[what][options_.probes[p].name] = largest_of(p);
+  for (std::size_t p = 0; p < options_.probes.size(); ++p)
     list_maxima(p, found);
-  }
   run_side_by_side(found.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found[k]); });
+  put_largest(found);
   const std::vector<double> errors = judge_amplitudes(found);
   for (std::size_t k = 0; k < found.size(); ++k) {
     const Found& x = found[k];
@@ -435,6 +404,25 @@ void HarmonicRun::add_peaks() {
     peaks_.push_back({x.at, size});
   }
   s_.add_table("peaks", std::move(table));
+}
+
+/// Of points and peaks.
+void HarmonicRun::put_largest(const std::vector<Found>& peaks) {
+  std::vector<double> most;
+  for (std::size_t p = 0; p < options_.probes.size(); ++p)
+    most.push_back(largest_of(p));
+  double& largest = twists_ ? largest_twist_ : largest_;
+  for (const Found& x : peaks) {
+    const double size = size_of(x.peak, x.probe);
+    most[x.probe] = std::max(most[x.probe], size);
+    if (size > largest) {
+      largest = size;
+      largest_at_ = x.at;
+    }
+  }
+  const char* what = twists_ ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]";
+  for (std::size_t p = 0; p < most.size(); ++p)
+    s_.summary()[what][options_.probes[p].name] = most[p];
 }
 
 BothSpins HarmonicRun::options_on(const results::RefinedModel& refined) const {
@@ -622,7 +610,7 @@ void HarmonicRun::finish() {
 }
 
 void HarmonicRun::execute() {
-  add_resonances();
+  refine_grid();
   solve_grid();
   find_largest();
   judge_mesh();

@@ -1,20 +1,26 @@
 // Where a grid of speeds or frequencies is made finer, so that no peak of a response is too sharp
 // for it.
 #pragma once
-#include <core/error.hpp>
+#include <analysis/spectra/motion.hpp>
 #include <results/frequency.hpp>
 #include <vector>
 
 namespace whirl::steps {
 
-/// A resonance, rad/s, and places about it, in multiples of its half width: of a mode of that
-/// damping ratio, of either sign. Appended to `out`.
-void add_places_about(double resonance, double damping_ratio, std::vector<double>& out);
+/// Kinds of motion that the forces drive by themselves, not by what couples them. Of others those that
+/// nothing damps are left out: their peaks are of rounding.
+struct Driven {
+  bool lateral = false, torsional = false, axial = false;
+};
 
-/// Ascending, apart by 1e-7 at least.
-void sort_apart(std::vector<double>& grid);
-
-/// W15: resonances could not be found, for this reason, and the points are those asked for.
-void warn_of_coarse_points(results::FrequencyStep& s, const Error& why);
+/// Puts natural frequencies at a speed, and places about them in multiples of their half width, into
+/// a grid of frequencies, rad/s, ascending and apart by 1e-7 at least. Where they cannot be found
+/// W15 says so and the grid stays.
+/// @pre the grid ascends and is not empty.
+void refine_at_frequencies(results::FrequencyStep& s, analysis::Motion motion, Driven driven,
+                           double speed, std::vector<double>& grid);
+/// Damped critical speeds of an order into a grid of speeds of either sign; likewise.
+void refine_at_criticals(results::FrequencyStep& s, analysis::Motion motion, Driven driven,
+                         double order, std::vector<double>& grid);
 
 }  // namespace whirl::steps

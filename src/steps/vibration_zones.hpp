@@ -1,0 +1,18 @@
+// Standards that judge the response to unbalance: zones of vibration (ISO 20816, ISO 7919) and balance
+// grades (ISO 21940-11). The deck gives the limits and their source.
+#pragma once
+#include <analysis/response/unbalance.hpp>
+#include <results/frequency.hpp>
+#include <vector>
+
+namespace whirl::steps {
+
+/// Zone of every probe where it comes nearest to the borders, over the operating speeds: a table, and
+/// colours in the figures of the probes, which stand in the section already.
+void add_zones(results::FrequencyStep& s, const analysis::UnbalanceResponse& r,
+               const std::vector<analysis::ResponseProbe>& probes, const model::UnbalanceStep& law);
+
+/// Unbalances of each shaft, added without regard to their angles, against a balance grade.
+void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law);
+
+}  // namespace whirl::steps
