@@ -5,6 +5,7 @@
 #include "deck_run.hpp"
 #include "drawn.hpp"
 #include "lateral_mass.hpp"
+#include "wheel_on_bearings.hpp"
 
 #include <fmt/format.h>
 
@@ -474,37 +475,8 @@ TEST(DrawnNumbers, OfATransientAreThoseOfItsTables) {
 
 namespace {
 
-/// Each kind of analysis, on a shaft with a wheel on bearings that are not alike each way.
-const char* const analyses = R"(format = 1
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "od[mm]"]
-rows = [["left", 300, 40], ["right", 500, 40]]
-[[disk]]
-name = "wheel"
-at = "left:end"
-mass = "20 kg"
-Ip = "0.4 kg.m^2"
-Id = "0.2 kg.m^2"
-[[bearing]]
-name = "A"
-at = "left:start"
-type = "linear"
-kxx = "1e8 N/m"
-kyy = "2e7 N/m"
-kzz = "3e7 N/m"
-cyy = "2e3 N.s/m"
-czz = "2e3 N.s/m"
-[[bearing]]
-name = "B"
-at = "right:end"
-type = "linear"
-kyy = "2e7 N/m"
-kzz = "3e7 N/m"
-cyy = "2e3 N.s/m"
-czz = "2e3 N.s/m"
-[[unbalance]]
+/// Each kind of analysis.
+const std::string analyses = test::wheel_on_bearings(R"([[unbalance]]
 at = "wheel"
 amount = "3 g.mm"
 [[load]]
@@ -546,7 +518,7 @@ name = "harmonic"
 type = "harmonic_response"
 frequency = { start = "1 Hz", stop = "100 Hz", points = 9 }
 force = [{ at = "wheel", force = ["0 N", "1 N", "0 N"], moment = ["1 N.m", "0 N.m", "0 N.m"] }]
-)";
+)");
 
 const char* const along = "position along the shaft [m]";
 const char* const deflection = "static_deflection.csv";

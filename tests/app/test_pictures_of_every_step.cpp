@@ -1,6 +1,7 @@
 // Every kind of step alone in a deck, with the report and the frames for ParaView: nothing that is
 // drawn may rest on what another step has left behind.
 #include "deck_run.hpp"
+#include "wheel_on_bearings.hpp"
 
 namespace {
 
@@ -14,37 +15,7 @@ struct Kind {
 
 void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
 
-constexpr const char* machine = R"(
-format = 1
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "od[mm]"]
-rows = [["left", 300, 40], ["right", 500, 40]]
-[[disk]]
-name = "wheel"
-at = "left:end"
-mass = "20 kg"
-Ip = "0.4 kg.m^2"
-Id = "0.2 kg.m^2"
-[[bearing]]
-name = "A"
-at = "left:start"
-type = "linear"
-kxx = "1e8 N/m"
-kyy = "2e7 N/m"
-kzz = "3e7 N/m"
-cyy = "2e3 N.s/m"
-czz = "2e3 N.s/m"
-[[bearing]]
-name = "B"
-at = "right:end"
-type = "linear"
-kyy = "2e7 N/m"
-kzz = "3e7 N/m"
-cyy = "2e3 N.s/m"
-czz = "2e3 N.s/m"
-[[unbalance]]
+const std::string machine = whirl::test::wheel_on_bearings(R"([[unbalance]]
 at = "wheel"
 amount = "300 g.mm"
 [[load]]
@@ -57,12 +28,12 @@ at = "wheel"
 [[output.vtk]]
 [[step]]
 name = "s"
-type = )";
+type = )");
 
 class PicturesOf : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(PicturesOf, AStepThatStandsAlone) {
-  const DeckRun run(machine + std::string("\"") + GetParam().name + "\"\n" + GetParam().step);
+  const DeckRun run(machine + "\"" + GetParam().name + "\"\n" + GetParam().step);
   ASSERT_EQ(run.exit, 0) << run.log;
   EXPECT_TRUE(fs::exists(run.folder / "r" / "report.html"));
   std::size_t pictures = 0;

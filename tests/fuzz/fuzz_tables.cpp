@@ -1,10 +1,6 @@
 // Whatever stands in a table of bearing coefficients that a deck names, reading ends with a model or
 // with errors, and the resolved form of a good deck reads again.
-#include "scratch.hpp"
-#include <deck/deck.hpp>
-
-#include <cstdlib>
-
+#include "deck_with_table.hpp"
 using namespace whirl;
 
 namespace {
@@ -31,11 +27,5 @@ type = "modal"
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::write("table.csv", fuzz::text_of(data, size));
-  const deck::Deck read = deck::read_deck(fuzz::write("deck.toml", machine), {});
-  (void)read.report();
-  if (!read.ok()) return 0;
-  const deck::Deck again = deck::read_deck_text(read.model.resolved, "resolved.toml", {});
-  if (!again.ok()) std::abort();
-  return 0;
+  return fuzz::read_deck_with_table(machine, data, size);
 }
