@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace whirl::io {
 
@@ -58,7 +59,11 @@ Json to_library(const Value& value) {
   return std::visit(Visitor{}, value.variant());
 }
 
-Value from_library(const Json& json) {
+// What no document of an engineer reaches and no stack notices.
+constexpr int deepest = 256;
+
+Value from_library(const Json& json, int depth = 0) {
+  if (depth > deepest) throw std::length_error("nested more than 256 deep");
   switch (json.type()) {
     case Json::value_t::boolean: return json.get<bool>();
     case Json::value_t::number_integer: return json.get<std::int64_t>();
@@ -68,13 +73,13 @@ Value from_library(const Json& json) {
     case Json::value_t::array: {
       Value list = Value::array();
       for (const Json& item : json)
-        list.push(from_library(item));
+        list.push(from_library(item, depth + 1));
       return list;
     }
     case Json::value_t::object: {
       Value object = Value::object();
       for (const auto& [key, item] : json.items())
-        object[key] = from_library(item);
+        object[key] = from_library(item, depth + 1);
       return object;
     }
     default: return {};
@@ -84,16 +89,24 @@ Value from_library(const Json& json) {
 }  // namespace
 
 Value parse_json(std::string_view text, std::string_view name) {
+  const auto refused = [&](std::string why, std::size_t byte) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+    const auto line = 1 + std::count(text.begin(), end, '\n');
+    const Where where{std::string(name), static_cast<int>(line), 0, 0, {}};
+    return Error(Exit::io,
+                 Diagnostic{Diagnostic::Severity::error, "E92", std::move(why), {}, where});
+  };
   try {
     return from_library(Json::parse(text));
   } catch (const Json::parse_error& e) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(e.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error,
-                                     "E92",
-                                     "this is not JSON",
-                                     {},
-                                     Where{std::string(name), static_cast<int>(line), 0, 0, {}}});
+    throw refused("this is not JSON", e.byte);
+  } catch (const Json::out_of_range& e) {  // the one that parsing throws: a number beyond 1e308
+    const std::string what = e.what();
+    const auto open = what.find('\'');
+    const std::string number = what.substr(open + 1, what.rfind('\'') - open - 1);
+    throw refused("the number " + number + " is beyond what a double holds", text.find(number));
+  } catch (const std::length_error& e) {
+    throw refused(e.what(), 0);
   }
 }
 
