@@ -2,7 +2,8 @@
 # Fuzzes whatever reads what a user gives (deck, units, tables, foundations, checkpoints, models of other programs), as many at once as
 # there are processors, under the address and undefined-behaviour sanitizers. Needs clang.
 #   run.sh SOURCE [SECONDS [TARGET ...]]      60 s each
-# Seeds: the decks, tables and checkpoints of examples and tests, and seeds/. What is found stays in build/fuzz/found.
+# Always the same inputs in the same order, further the more seconds there are (WHIRL_FUZZ_SEED: others), as long as nothing stands in
+# build/fuzz/corpus. Seeds: the decks, tables and checkpoints of examples and tests, and seeds/. What is found stays in build/fuzz/found.
 set -euo pipefail
 cd "$1"
 seconds=${2:-60}
@@ -39,7 +40,7 @@ fuzz() {
     *) seeds=("$here/seeds/$1") ;;
   esac
   local log=$build/found/$1.log
-  if ! "$build/bin/fuzz_$1" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+  if ! "$build/bin/fuzz_$1" -max_total_time="$seconds" -seed="${WHIRL_FUZZ_SEED:-1}" -timeout=20 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
     -artifact_prefix="$build/found/$1_" "$build/corpus/$1" "${seeds[@]}" >"$log" 2>&1; then
     tail -n 60 "$log"
     echo "fuzz_$1 found something: build/fuzz/found/$1_*"
