@@ -2,7 +2,7 @@
 #include <core/contract.hpp>
 #include <elements/films/turbulence.hpp>
 
-#include <Eigen/LU>
+#include <la/dense.hpp>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -411,7 +411,7 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
     add(row, -s.carry_over, heat[before].outlet(), static_cast<Index>(before));
     add(journal, 1.0, heat[k].into_journal(), row);
   }
-  const VecX T = A.partialPivLu().solve(b);
+  const VecX T = la::DenseLu<double>(A).solve(b);
   out.journal = T[journal];
   out.pads.resize(n);
   for (std::size_t k = 0; k < n; ++k) {

@@ -2,7 +2,7 @@
 #include <core/contract.hpp>
 
 #include <core/error.hpp>
-#include <Eigen/LU>
+#include <la/dense.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -300,9 +300,10 @@ ReducedCoefficients reduce_pads(const PadCoefficients& full, double w) {
   const auto own = [n](const MatX& m) { return m.bottomRightCorner(n, n); };
   ReducedCoefficients out;
   if (w == 0.0) {
-    const Eigen::PartialPivLU<MatX> lu(MatX(own(full.K)));
-    const MatX follow = lu.solve(MatX(full.K.bottomLeftCorner(n, 2)));
-    const MatX back = lu.transpose().solve(MatX(full.K.topRightCorner(2, n).transpose()));
+    const MatX K = own(full.K);
+    const MatX follow = la::DenseLu<double>(K).solve(MatX(full.K.bottomLeftCorner(n, 2)));
+    const MatX across = full.K.topRightCorner(2, n).transpose();
+    const MatX back = la::DenseLu<double>(K.transpose()).solve(across);
     out.K = full.K.topLeftCorner<2, 2>() - full.K.topRightCorner(2, n) * follow;
     out.C = full.C.topLeftCorner<2, 2>() - full.C.topRightCorner(2, n) * follow -
             back.transpose() * full.C.bottomLeftCorner(n, 2) +
@@ -311,7 +312,8 @@ ReducedCoefficients reduce_pads(const PadCoefficients& full, double w) {
   }
   using MatXc = Eigen::MatrixXcd;
   const MatXc Z = (full.K - w * w * full.M).cast<Complex>() + Complex(0.0, w) * full.C;
-  const MatXc follow = Z.bottomRightCorner(n, n).partialPivLu().solve(Z.bottomLeftCorner(n, 2));
+  const la::DenseLu<Complex> lu(Z.bottomRightCorner(n, n));
+  const MatXc follow = lu.solve(MatXc(Z.bottomLeftCorner(n, 2)));
   const Eigen::Matrix2cd seen = Z.topLeftCorner<2, 2>() - Z.topRightCorner(2, n) * follow;
   out.K = seen.real();
   out.C = seen.imag() / w;

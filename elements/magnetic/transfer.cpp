@@ -2,9 +2,7 @@
 
 #include <core/contract.hpp>
 #include <core/error.hpp>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <la/dense.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +13,7 @@ namespace whirl::elements {
 MatXc StateSpace::at(Complex s) const {
   if (states() == 0) return D.cast<Complex>();
   const MatXc from_states = MatXc(s * MatXc::Identity(states(), states()) - A.cast<Complex>());
-  return C.cast<Complex>() * from_states.partialPivLu().solve(B.cast<Complex>()) +
+  return C.cast<Complex>() * la::DenseLu<Complex>(from_states).solve(MatXc(B.cast<Complex>())) +
          D.cast<Complex>();
 }
 
@@ -135,7 +133,7 @@ StateSpace beside(const StateSpace& one, const StateSpace& other) {
 VecX sizes_of_states(const StateSpace& s) {
   const Index n = s.states();
   if (n == 0) return VecX(0);
-  const VecXc poles = s.A.eigenvalues();
+  const VecXc poles = la::eigenvalues(s.A);
   double slowest = infinity, fastest = 0;
   const double none = 1e-9 * poles.cwiseAbs().maxCoeff();
   for (const Complex& p : poles) {
@@ -151,9 +149,8 @@ VecX sizes_of_states(const StateSpace& s) {
       static_cast<int>(std::ceil(per_decade * std::log10(100.0 * fastest / slowest)));
   for (int k = 0; k <= points; ++k) {
     const Complex at(0.0, from * std::pow(10.0, static_cast<double>(k) / per_decade));
-    const MatXc reached = MatXc(at * MatXc::Identity(n, n) - s.A.cast<Complex>())
-                              .partialPivLu()
-                              .solve(s.B.cast<Complex>());
+    const MatXc from_states = at * MatXc::Identity(n, n) - s.A.cast<Complex>();
+    const MatXc reached = la::DenseLu<Complex>(from_states).solve(MatXc(s.B.cast<Complex>()));
     size = size.cwiseMax(reached.cwiseAbs().rowwise().maxCoeff());
   }
   const double least = 1e-12 * size.maxCoeff();

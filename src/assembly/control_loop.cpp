@@ -2,7 +2,7 @@
 
 #include <core/contract.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 
 #include <cmath>
 
@@ -108,7 +108,7 @@ ControlLoop make_control_loop(const model::MagneticBearing& law) {
   way = series(way, on_both_axes(first_order(law.amplifier_bandwidth)));
   const Index n = way.states();
   out.current = {n - 2, n - 1};
-  out.poles = way.A.eigenvalues();
+  out.poles = la::eigenvalues(way.A);
   out.size = sizes_of_states(way);
   // the last states are the amplifiers', whose output is their state: 1/(1 + s/w) has C = 1
   out.current_unit = law.per_displacement / law.per_current;

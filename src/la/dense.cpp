@@ -52,6 +52,15 @@ MatX pseudo_inverse(const MatX& a) {
   return a.completeOrthogonalDecomposition().pseudoInverse();
 }
 
+MatX least_squares(const MatX& a, const MatX& b) {
+  WHIRL_EXPECTS(a.rows() == b.rows());
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+VecXc least_squares(const MatXc& a, const VecXc& b) {
+  WHIRL_EXPECTS(a.rows() == b.size());
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
 VecXc pivoted_solution(const MatXc& a, const VecXc& b) { return a.colPivHouseholderQr().solve(b); }
 
 std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least) {

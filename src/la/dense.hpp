@@ -35,8 +35,11 @@ VecX hermitian_eigenvalues(const MatXc& a);
 
 /// Moore-Penrose inverse.
 MatX pseudo_inverse(const MatX& a);
+/// x with A x = b in least squares, the shortest of them.
+/// @pre as many rows of A as of b, here and below.
+MatX least_squares(const MatX& a, const MatX& b);
+VecXc least_squares(const MatXc& a, const VecXc& b);
 /// x with A x = b by full pivoting; A square, perhaps nearly singular.
-/// @pre as many rows of A as entries of b, here and below.
 VecXc pivoted_solution(const MatXc& a, const VecXc& b);
 /// The same; nothing when no pivot exceeds `least` or A is singular in rounding.
 std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least);

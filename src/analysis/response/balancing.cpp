@@ -1,7 +1,7 @@
 #include <analysis/response/balancing.hpp>
 #include <core/contract.hpp>
 
-#include <Eigen/QR>
+#include <la/dense.hpp>
 
 #include <algorithm>
 
@@ -9,12 +9,12 @@ namespace whirl::analysis {
 
 VecXc balance_by_influence(const MatXc& A, const VecXc& r0) {
   WHIRL_EXPECTS(A.rows() == r0.size());
-  return -A.completeOrthogonalDecomposition().solve(r0);
+  return -la::least_squares(A, r0);
 }
 
 MatX modal_patterns(const MatX& phi) {
   WHIRL_EXPECTS(phi.rows() <= phi.cols());
-  return phi.completeOrthogonalDecomposition().solve(MatX::Identity(phi.rows(), phi.rows()));
+  return la::least_squares(phi, MatX::Identity(phi.rows(), phi.rows()));
 }
 
 VecXc balance_by_modes(const MatXc& A, const VecXc& r0, const MatX& patterns,

@@ -4,7 +4,7 @@
 
 #include <core/error.hpp>
 
-#include <Eigen/QR>
+#include <la/dense.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ class FixedPoint {
       S.col(k) = steps_[static_cast<std::size_t>(k)];
       D.col(k) = changes_[static_cast<std::size_t>(k)];
     }
-    const VecX share = D.colPivHouseholderQr().solve(residual);
+    const VecX share = la::ColumnSpan<double>(D).coordinates(residual);
     return x + residual - (S + D) * share;
   }
 

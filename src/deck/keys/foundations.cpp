@@ -2,7 +2,7 @@
 #include <core/units.hpp>
 #include <deck/visitor.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -157,8 +157,7 @@ void describe(Visitor& v, model::Foundation& f) {
   for (Index i = 0; i < n; ++i)
     size[i] = size[i] > 0 ? 1 / std::sqrt(size[i]) : 1.0;
   const MatX scaled = size.asDiagonal() * f.M * size.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatX> eig(scaled, Eigen::EigenvaluesOnly);
-  if (n > 0 && eig.eigenvalues()[0] < -1e-6)
+  if (n > 0 && la::symmetric_eigenpairs(scaled).values[0] < -1e-6)
     v.error("E14", nullptr,
             "the mass matrix is not positive: some motion would have a negative kinetic energy",
             "check signs and couplings of M, and that a massless coordinate has none");

@@ -3,7 +3,7 @@
 #include <model/full_section.hpp>
 #include <cmath>
 #include <core/units.hpp>
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <fmt/format.h>
 
 namespace whirl::deck {
@@ -146,12 +146,12 @@ void check_definite(Visitor& v, const char* key, const Matrix<6>& A, double leas
   Vector<6> scale = A.diagonal().cwiseAbs().cwiseSqrt();
   for (int i = 0; i < 6; ++i)
     scale[i] = scale[i] > 0 ? 1 / scale[i] : 1.0;
-  const Matrix<6> unit = scale.asDiagonal() * (0.5 * (A + A.transpose())) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix<6>> modes(unit);
-  const double lowest = modes.eigenvalues()[0];
+  const MatX unit = scale.asDiagonal() * (0.5 * (A + A.transpose())) * scale.asDiagonal();
+  const la::SymmetricEigenpairs modes = la::symmetric_eigenpairs(unit);
+  const double lowest = modes.values[0];
   if (lowest > least) return;
   int main = 0;
-  modes.eigenvectors().col(0).cwiseAbs().maxCoeff(&main);
+  modes.vectors.col(0).cwiseAbs().maxCoeff(&main);
   v.error("E36", key,
           fmt::format("the {} is not positive {}: scaled to a diagonal of ones it has the "
                       "eigenvalue {:.4g}, mainly {}",
