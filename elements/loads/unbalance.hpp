@@ -1,5 +1,7 @@
 // Unbalance: the static moment U = mass x eccentricity of the station's bodies, turning with them.
-// One node.
+// One node, or two: a slice of shaft too light to bear the moment has the place of its own node (u, d,
+// the first) and the direction b of a heavier one beside it (the second); what the shaft twists and
+// bends between them is left out of b alone.
 //   T = U (u + o d)'.b',  b = P(d <- e)(cos(phi + beta) e2 + sin(phi + beta) e3);  potential -U g.b
 //   f_u = U b'',  f_d = U o b'',  (f_d, f_phi) += U (db/d(d, phi))^T (u'' + o d'' - g)
 // Exact at any amplitude: a body of given mass, given inertia about the node and static moment U,
@@ -14,8 +16,10 @@
 
 namespace whirl::elements {
 
-struct UnbalanceMass {
-  static constexpr int n_nodes = 1, width = 7;
+template <int N>
+struct UnbalanceOn {
+  static_assert(N == 1 || N == 2);
+  static constexpr int n_nodes = N, width = 7;
   static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         inertial = true, linear_in_displacements = true;
@@ -32,17 +36,22 @@ struct UnbalanceMass {
   LawPtr factor;
   double offset = 0;
 
-  UnbalanceMass() = default;
-  UnbalanceMass(double U, double beta, LawPtr law = nullptr, double o = 0);
+  UnbalanceOn() = default;
+  UnbalanceOn(double U, double beta, LawPtr law = nullptr, double o = 0);
   /// kg m at time t
   double at(double t) const { return factor ? amount * factor->at(t).f : amount; }
 
-  void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;
-  void add_tangent(const system::Nodes<1>& x, const system::Context& c,
-                   system::TangentX<7>& t) const;
-  void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
+  void add_force(const system::Nodes<N>& x, const system::Context& c,
+                 system::ForceX<7 * N>& f) const;
+  void add_tangent(const system::Nodes<N>& x, const system::Context& c,
+                   system::TangentX<7 * N>& t) const;
+  void add_energy(const system::Nodes<N>& x, const system::Context& c, system::Energy& e) const;
   std::vector<double> breakpoints() const { return breakpoints_of(factor); }
-  system::RigidInertia inertia(double time) const;
+  system::RigidInertia inertia(double time) const requires(N == 1);
 };
+using UnbalanceMass = UnbalanceOn<1>;
+using LightUnbalance = UnbalanceOn<2>;
+extern template struct UnbalanceOn<1>;
+extern template struct UnbalanceOn<2>;
 
 }  // namespace whirl::elements

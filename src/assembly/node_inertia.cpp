@@ -9,7 +9,11 @@
 
 namespace whirl::assembly {
 
-double NodeInertia::carries() const { return std::sqrt(mass * std::min(Id, Ip)); }
+double NodeInertia::carries() const { return carries_with(*this); }
+
+double NodeInertia::carries_with(const NodeInertia& other) const {
+  return std::sqrt(mass * std::min(other.Id, other.Ip));
+}
 
 std::vector<NodeInertia> element_inertias(const model::Model& model, const meshes::Mesh& mesh,
                                           const meshes::Line& line) {

@@ -9,6 +9,8 @@ namespace whirl::assembly {
 struct NodeInertia {
   double mass = 0, Id = 0, Ip = 0;  ///< kg, kg m2 about the node
   double carries() const;           ///< sqrt(mass min(Id, Ip)), kg m: an unbalance must be less
+  /// With the direction of another node.
+  double carries_with(const NodeInertia& other) const;
   NodeInertia& operator+=(const NodeInertia& o) {
     return mass += o.mass, Id += o.Id, Ip += o.Ip, *this;
   }

@@ -1,10 +1,12 @@
 // Unbalances. A static moment U at one section has no limit in a beam: with the section's mass m
 // and inertia J (per length h both ~ h) the kinetic energy m u'^2/2 + U u'.b' + J omega^2/2 is
 // positive only while U^2 < m J, so that on short elements a run with a perfectly ordinary
-// unbalance grows without bound at the highest frequencies of the mesh. A real unbalance sits on a
-// length of shaft. So U is shared among as many neighbouring nodes as are needed for each to carry
-// its share, with the same sum and the same place of the resultant: w_j = c_j (a + b (x_j - x0)),
-// c_j = m_j J_j, which is the least squares of U_j^2/c_j.
+// unbalance grows without bound at the highest frequencies of the mesh. So U has the place of its
+// section and turns with the nearest node whose inertia suffices: the force stays where it is, and
+// only how the shaft twists and bends between the two is left out of its direction. Where no node
+// suffices (a bare shaft in short elements) U is shared among as many neighbouring nodes as are needed
+// for each to carry its share, with the same sum and the same place of the resultant:
+// w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
 #include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
 #include <elements/loads/unbalance.hpp>
@@ -77,6 +79,21 @@ Shares share(double U, double x0, Index k, const std::vector<double>& x,
     else
       --lo;
   }
+}
+
+/// The nearest node with whose direction node k carries U to `fine`; -1: none.
+Index guide_of(double U, Index k, const std::vector<double>& x,
+               const std::vector<NodeInertia>& nodes) {
+  const auto i = static_cast<std::size_t>(k);
+  Index best = -1;
+  double nearest = infinity;
+  for (std::size_t j = 0; j < nodes.size(); ++j) {
+    const double distance = std::abs(x[j] - x[i]);
+    if (U > fine * nodes[i].carries_with(nodes[j]) || distance >= nearest) continue;
+    nearest = distance;
+    best = static_cast<Index>(j);
+  }
+  return best;
 }
 
 void too_much(Assembly& a, const model::Unbalance& u, double U,
@@ -159,6 +176,11 @@ void add_unbalances(Assembly& a) {
     std::vector<double> x;
     for (Index i = 0; i < line.nodes; ++i)
       x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
+    if (const Index guide = guide_of(U, k, x, nodes); guide >= 0) {
+      a.builder.add(elements::LightUnbalance(u.amount, u.phase, u.factor, at.offset),
+                    {at.node, line.first_node + guide}, "unbalances of light slices");
+      continue;
+    }
     const double x0 = x[static_cast<std::size_t>(k)] + at.offset;
     Shares s = share(U, x0, k, x, nodes);
     if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
