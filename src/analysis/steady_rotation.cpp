@@ -440,14 +440,35 @@ bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const 
          f.chart == polynomial_charts_;
 }
 
+namespace {
+
+Eigen::Map<VecX> values_of(la::BlockMatrix<6>& m) {
+  return {m.data(), static_cast<Index>(m.value_count())};
+}
+
+/// Adds what is left of samples of this size in the mean. What is rounding of theirs is nothing: a
+/// line that turns freely would be held by it, or thrown off.
+void add_mean(const Eigen::Ref<const VecX>& mean, const Eigen::Ref<const VecX>& size,
+              Eigen::Ref<VecX> out) {
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  out.array() += (mean.array().abs() > rounding * size.array()).select(mean.array(), 0.0);
+}
+
+}  // namespace
+
 bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, const VecX& q,
                                      const Terms& only, VecX& r) {
   WHIRL_EXPECTS(weights_.cols() == static_cast<Index>(theta_.size()));
   if (only.empty()) return true;
+  mean_r_.setZero(q.size());
+  size_r_.setZero(q.size());
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
-    r += weights_(0, static_cast<Index>(k)) * r_;
+    const double w = weights_(0, static_cast<Index>(k));
+    mean_r_ += w * r_;
+    size_r_ += std::abs(w) * r_.cwiseAbs();
   }
+  add_mean(mean_r_, size_r_, r);
   return true;
 }
 
@@ -455,10 +476,25 @@ bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const
                                     const Terms& only, la::MCK& out) {
   WHIRL_EXPECTS(weights_.cols() == static_cast<Index>(theta_.size()));
   if (only.empty()) return true;
+  if (mean_.M.value_count() == 0) {
+    mean_ = system_.make_matrices();
+    size_ = system_.make_matrices();
+  }
+  constexpr std::array parts{&la::MCK::M, &la::MCK::C, &la::MCK::K};
+  for (const auto part : parts) {
+    values_of(mean_.*part).setZero();
+    values_of(size_.*part).setZero();
+  }
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_tangent(f, Omega, q, theta_[k], sample_, only)) return false;
-    add_scaled(out, weights_(0, static_cast<Index>(k)), sample_);
+    const double w = weights_(0, static_cast<Index>(k));
+    for (const auto part : parts) {
+      values_of(mean_.*part) += w * values_of(sample_.*part);
+      values_of(size_.*part) += std::abs(w) * values_of(sample_.*part).cwiseAbs();
+    }
   }
+  for (const auto part : parts)
+    add_mean(values_of(mean_.*part), values_of(size_.*part), values_of(out.*part));
   return true;
 }
 

@@ -161,6 +161,8 @@ class SteadySystem {
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;  // scratch
   la::MCK part_, sample_;
+  la::MCK mean_, size_;  // of means: the sum over the samples, and of what they are without signs
+  VecX mean_r_, size_r_;
   // What does not depend on the frequency asked about, kept while the state stays: supports
   // tabulated against it alone are evaluated again
   la::MCK fixed_;
