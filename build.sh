@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libsundials-dev libgtest-dev libtomlplusplus-dev
-          libcli11-dev libfmt-dev nlohmann-json3-dev libhdf5-dev libpng-dev libmd-dev)
+          libcli11-dev libfmt-dev nlohmann-json3-dev libhdf5-dev libpng-dev libmd-dev libminizip-dev libexpat1-dev)
 [ "${WHIRL_NO_VTK:-0}" = 1 ] || packages+=(libvtk9-dev)
 # the long tests try the Python module
 [ "${1:-}" = test ] && [[ " $* " = *" long "* ]] && packages+=(python3-dev pybind11-dev python3-numpy python3-scipy)

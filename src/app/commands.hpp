@@ -52,6 +52,7 @@ int new_deck(const NewOptions& options);
 struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;  ///< empty: standard output
+  std::string sheet;             ///< of a workbook; empty: the first with cells
   bool force = false;
 };
 /// A file of another program as a deck (or a table of one), and what of it was left out. The deck

@@ -9,7 +9,7 @@
 namespace whirl::app {
 
 int convert_model(const ConvertOptions& o) {
-  const convert::Converted made = convert::convert_file(o.input);
+  const convert::Converted made = convert::convert_file(o.input, o.sheet);
   if (!o.output.empty() && !o.force && std::filesystem::exists(o.output)) {
     Diagnostic d;
     d.code = "E91";

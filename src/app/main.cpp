@@ -218,9 +218,10 @@ void add_texts(CLI::App& app, Given& g) {
 
   c = app.add_subcommand("convert",
                          "a model of another program as a deck: a rotor saved by ROSS "
-                         "(.toml, .json), a table of stations or coefficients (.csv)");
+                         "(.toml, .json), a table of stations or coefficients (.csv, .xlsx)");
   c->add_option("input", g.convert.input, "file to convert")->required();
   c->add_option("output", g.convert.output, "file to write (standard output when left out)");
+  c->add_option("--sheet", g.convert.sheet, "sheet of a workbook (the first with cells)");
   c->add_flag("--force", g.convert.force, "replace an existing file");
 
   c = app.add_subcommand("view", "arrange the frames of a results folder in ParaView");

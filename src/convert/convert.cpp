@@ -1,6 +1,7 @@
 #include <convert/convert.hpp>
 #include <convert/notes.hpp>
 #include <convert/ross.hpp>
+#include <convert/workbook.hpp>
 #include <io/json.hpp>
 #include <algorithm>
 #include <cctype>
@@ -74,23 +75,40 @@ Converted convert_ross_json(const std::string& text, const std::string& name) {
   return convert_ross(tree_of(io::parse_json(text, name)), name);
 }
 
-Converted convert_file(const std::filesystem::path& file) {
+namespace {
+
+Converted convert_workbook(const std::filesystem::path& file, const std::string& sheet) {
+  const std::string name = file.filename().string();
+  Notes notes(name);
+  const std::string text = sheet_as_csv(file, sheet, notes);
+  Converted out = convert_csv(text, name);
+  std::vector<Diagnostic> said = notes.take();
+  out.left_out.insert(out.left_out.begin(), said.begin(), said.end());
+  return out;
+}
+
+}  // namespace
+
+Converted convert_file(const std::filesystem::path& file, const std::string& sheet) {
   const std::string name = file.filename().string();
   const std::string extension = lower_extension(file);
-  if (extension == ".xlsx" || extension == ".xls" || extension == ".ods")
-    Notes(name).refuse("a workbook is not read, only the text of a sheet is",
-                       "save the sheet as CSV (File, Save As; or soffice --convert-to csv '" +
-                           name + "') and convert that");
+  if (extension == ".xls" || extension == ".ods")
+    Notes(name).refuse("workbooks of this kind are not read",
+                       "save it as .xlsx, or the sheet as CSV (soffice --convert-to xlsx '" + name +
+                           "'), and convert that");
+  if (extension != ".xlsx" && !sheet.empty())
+    Notes(name).refuse("only a workbook (.xlsx) has sheets", "leave --sheet out");
   const deck::FileText text = deck::read_file(file, deck::max_table_bytes);
   if (!text.ok())
     throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, text.code, text.message,
                                      text.hint, Where{file.string(), 0, 0, 0, {}}});
+  if (extension == ".xlsx") return convert_workbook(file, sheet);
   if (extension == ".toml") return convert_ross_toml(text.text, name);
   if (extension == ".json") return convert_ross_json(text.text, name);
   if (extension == ".csv" || extension == ".txt" || extension == ".tsv")
     return convert_csv(text.text, name);
   Notes(name).refuse("its kind is not known by its name",
-                     "rotors saved by ROSS are .toml or .json, tables are .csv");
+                     "rotors saved by ROSS are .toml or .json, tables are .csv or .xlsx");
 }
 
 }  // namespace whirl::convert

@@ -1,5 +1,5 @@
 // Models of other programs as decks: ROSS rotors (TOML, JSON), tables of stations and of bearing
-// coefficients (CSV).
+// coefficients (CSV, XLSX).
 #pragma once
 #include <core/error.hpp>
 #include <filesystem>
@@ -16,11 +16,12 @@ struct Converted {
   std::vector<Diagnostic> left_out;
 };
 
-/// Converts one file by what is in it: a rotor saved by ROSS (.toml, .json), a CSV of stations
-/// (length, diameters, lumped masses) or of bearing coefficients (speed, kxx, kxy, ..).
+/// Converts one file by what is in it: a rotor saved by ROSS (.toml, .json), a table (.csv, .xlsx) of
+/// stations (length, diameters, lumped masses) or of bearing coefficients (speed, kxx, kxy, ..).
 /// Axes: what others call x, y across and z along the shaft become y, z across and x along.
 /// @throws Error (E02, E03: unreadable; E42: neither of these, or without what a deck must have).
-Converted convert_file(const std::filesystem::path& file);
+/// @param sheet of a workbook; empty: the first with cells.
+Converted convert_file(const std::filesystem::path& file, const std::string& sheet = {});
 
 /// The same from text; `name` is shown in messages.
 Converted convert_ross_toml(const std::string& text, const std::string& name);

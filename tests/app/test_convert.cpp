@@ -1,5 +1,7 @@
 // Models of other programs: converted by the program, then run.
+#include "../io/temp_folder.hpp"
 #include "deck_run.hpp"
+#include "write_workbook.hpp"
 
 #include <convert/convert.hpp>
 #include <deck/deck.hpp>
@@ -10,6 +12,7 @@ using namespace whirl;
 using convert::Converted;
 using test::Columns;
 using test::DeckRun;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -199,11 +202,14 @@ TEST(Convert, RefusesWhatMakesNoShaft) {
   soft.replace(soft.find("211e9"), 5, "-2e11");
   EXPECT_EQ(refusal(soft), "E42 ShaftElement 's 0': rho, E or G_s of its material is not positive");
   EXPECT_EQ(refusal("[1, 2"), "E92 this is not JSON");
+  EXPECT_EQ(refusal("{\"L\": [1, -1e730]}"), "E92 the number -1e730 is beyond what a double holds");
+  EXPECT_EQ(refusal(std::string(100000, '[') + std::string(100000, ']')),
+            "E92 nested more than 256 deep");
 }
 
-// Whether it is there or not: the way to its text is told.
-TEST(Convert, AWorkbookIsToBeSavedAsText) {
-  for (const char* name : {"rotor.xlsx", "ROTOR.XLS", "rotor.ods"}) {
+// Whether it is there or not: the way to a workbook that is read is told.
+TEST(Convert, OldWorkbooksAreToBeSavedAnew) {
+  for (const char* name : {"ROTOR.XLS", "rotor.ods"}) {
     try {
       convert::convert_file(name);
       ADD_FAILURE() << name;
@@ -214,6 +220,106 @@ TEST(Convert, AWorkbookIsToBeSavedAsText) {
       EXPECT_NE(said.find(name), std::string::npos) << said;
     }
   }
+}
+
+namespace {
+
+// As spreadsheets write them: shared and own texts, a number with its rounding, a formula with its
+// value, a gap, an empty row, a text with marks of how it is pronounced.
+const char* const shaft_rows =
+    "<row r=\"1\"><c r=\"A1\" t=\"s\"><v>2</v></c></row>"
+    "<row r=\"3\"><c r=\"A3\" t=\"s\"><v>0</v></c><c r=\"B3\" t=\"s\"><v>1</v></c>"
+    "<c r=\"C3\" t=\"inlineStr\"><is><t>ID (mm)</t></is></c>"
+    "<c r=\"D3\" t=\"inlineStr\"><is><t>Mass (kg)</t></is></c></row>"
+    "<row r=\"4\"><c r=\"A4\"><v>250.10000000000002</v></c><c r=\"B4\"><f>2*25</f><v>50</v></c>"
+    "<c r=\"D4\"><v>1.5</v></c></row>"
+    "<row r=\"6\"><c r=\"A6\"><v>100</v></c><c r=\"B6\"><v>60</v></c><c "
+    "r=\"C6\"><v>10</v></c></row>";
+const char* const shaft_texts =
+    "<si><t>Length (mm)</t></si><si><r><t>OD </t></r><r><t>(mm)</t></r><rPh sb=\"0\" "
+    "eb=\"1\"><t>odee</t></rPh></si><si><t>Pump P-101, \"A\"</t></si>";
+
+std::string refused_workbook(const std::map<std::string, std::string>& parts,
+                             const std::string& sheet = {}) {
+  const io::TempFolder folder;
+  test::write_workbook(folder.path() / "rotor.xlsx", parts);
+  try {
+    convert::convert_file(folder.path() / "rotor.xlsx", sheet);
+  } catch (const Error& e) {
+    return e.diagnostics().front().code + " " + e.what();
+  }
+  return "taken";
+}
+
+}  // namespace
+
+TEST(Convert, AWorkbookIsWhatItsSheetIsAsText) {
+  const io::TempFolder folder;
+  test::write_workbook(folder.path() / "rotor.xlsx", test::workbook_of(shaft_rows, shaft_texts));
+  const Converted book = convert::convert_file(folder.path() / "rotor.xlsx");
+  const Converted text = convert::convert_csv(
+      "Length (mm),OD (mm),ID (mm),Mass (kg)\n250.1,50,,1.5\n100,60,10\n", "rotor.xlsx");
+  EXPECT_TRUE(says(book, "\"Pump P-101, \"\"A\"\"\" above the titles is left out"));
+  // but for what is said at its head
+  const auto model = [](const std::string& deck) { return deck.substr(deck.find("[[shaft]]")); };
+  EXPECT_EQ(model(book.text), model(text.text));
+  EXPECT_TRUE(deck::read_deck_text(book.text, "deck.toml").ok());
+}
+
+TEST(Convert, ASheetOfAWorkbookIsNamed) {
+  auto parts =
+      test::workbook_of("<row><c t=\"inlineStr\"><is><t>a</t></is></c></row>", shaft_texts);
+  parts["xl/workbook.xml"] =
+      "<x:workbook xmlns:x=\"x\" xmlns:r=\"r\"><x:sheets><x:sheet name=\"Notes\" state=\"hidden\" "
+      "r:id=\"rId1\"/><x:sheet name=\"Empty\" r:id=\"rId3\"/><x:sheet name=\"Shaft &amp; disks\" "
+      "r:id=\"rId2\"/></x:sheets></x:workbook>";
+  parts["xl/_rels/workbook.xml.rels"] =
+      "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/><Relationship "
+      "Id=\"rId2\" Target=\"/xl/worksheets/sheet2.xml\"/><Relationship Id=\"rId3\" "
+      "Target=\"worksheets/sheet3.xml\"/></Relationships>";
+  parts["xl/worksheets/sheet2.xml"] =
+      std::string("<worksheet><sheetData>") + shaft_rows + "</sheetData></worksheet>";
+  parts["xl/worksheets/sheet3.xml"] = "<worksheet><sheetData/></worksheet>";
+  const io::TempFolder folder;
+  const auto file = folder.path() / "rotor.xlsx";
+  test::write_workbook(file, parts);
+  const Converted first = convert::convert_file(file);
+  EXPECT_TRUE(says(first, "sheet 'Shaft & disks' is read, 'Notes', 'Empty' are not"));
+  EXPECT_EQ(convert::convert_file(file, "Shaft & disks").text.substr(0, 40),
+            first.text.substr(0, 40));
+  EXPECT_EQ(refused_workbook(parts, "Shaft"), "E42 it has no sheet 'Shaft'");
+  EXPECT_EQ(refused_workbook(parts, "Empty"), "E42 the table is empty");
+}
+
+TEST(Convert, ADamagedWorkbookIsRefused) {
+  const auto good = test::workbook_of(shaft_rows, shaft_texts);
+  const auto with = [&good](const char* part, const std::string& text) {
+    auto parts = good;
+    parts[part] = text;
+    return refused_workbook(parts);
+  };
+  EXPECT_EQ(refused_workbook({{"word/document.xml", "<w/>"}}),
+            "E42 it is not a workbook of the kind .xlsx");
+  EXPECT_EQ(with("xl/workbook.xml", "<workbook>"), "E42 its list of sheets is damaged");
+  EXPECT_EQ(with("xl/sharedStrings.xml", "<sst><si></sst>"), "E42 its texts are damaged");
+  for (const char* rows : {"<row r=\"1\"><c", "<row r=\"0\"><c r=\"A1\"><v>1</v></c></row>",
+                           "<row r=\"1\"><c r=\"XFE1\"><v>1</v></c></row>",
+                           "<row r=\"1\"><c r=\"A1\" t=\"s\"><v>7</v></c></row>"})
+    EXPECT_EQ(refused_workbook(test::workbook_of(rows, shaft_texts)),
+              "E42 its sheet 'Sheet1' is damaged")
+        << rows;
+  EXPECT_EQ(refused_workbook(test::workbook_of("", "")), "E42 it has no sheet with cells");
+  // not a zipped file at all, and one that ends early
+  const io::TempFolder folder;
+  const auto file = folder.path() / "rotor.xlsx";
+  test::write_workbook(file, good);
+  for (const std::uintmax_t bytes :
+       {std::uintmax_t{0}, std::uintmax_t{100}, fs::file_size(file) - 30}) {
+    fs::resize_file(file, bytes);
+    EXPECT_THROW(convert::convert_file(file), Error) << bytes;
+    test::write_workbook(file, good);
+  }
+  EXPECT_EQ(convert::convert_file(file).is_table, false);
 }
 
 TEST(Convert, StationsOfASpreadsheet) {
