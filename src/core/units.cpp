@@ -468,7 +468,17 @@ Quantity unit(std::string_view text) {
   return p.quantity;
 }
 
+namespace {
+/// A balance grade of ISO 21940-11 as it is written there, "G2.5": a velocity in mm/s.
+bool is_balance_grade(std::string_view text, std::string_view wanted) {
+  return wanted == "mm/s" && text.size() > 1 && text.front() == 'G' &&
+         text.find_first_not_of("0123456789. ", 1) == std::string_view::npos;
+}
+}  // namespace
+
 Converted convert(std::string_view text, std::string_view wanted) {
+  if (is_balance_grade(text, wanted))
+    return convert(fmt::format("{} {}", text.substr(1), wanted), wanted);
   Parsed p = parse(text);
   if (p.problem) return {0, p.problem};
   const Dimension want = unit(wanted).dimension;

@@ -59,7 +59,8 @@ Parsed parse(std::string_view text);
 Quantity unit(std::string_view text);
 
 /// Value of `text` in the SI base units of `wanted` (not in `wanted` itself). A plain number is a
-/// problem unless `wanted` is one or it is zero and no temperature.
+/// problem unless `wanted` is one or it is zero and no temperature. In "mm/s", "G2.5" is a balance
+/// grade of ISO 21940-11.
 struct Converted {
   double value = 0;
   std::optional<Problem> problem;

@@ -369,7 +369,7 @@ name = "u"
 type = "unbalance_response"
 speed = { start = "2000 rpm", stop = "5000 rpm", points = 4 }
 operating_speed = ["4000 rpm", "5000 rpm"]
-balance_grade = "1 mm/s"
+balance_grade = "G1"
 [step.zones]
 )"));
   ASSERT_EQ(d.exit, 0) << d.log;

@@ -203,6 +203,13 @@ TEST(Units, DecimalLiteralsAreExact) {
   EXPECT_EQ(units::convert("7.3 kN/mm", "N/m").value, 7.3e6);
 }
 
+TEST(Units, ABalanceGradeIsAVelocity) {
+  EXPECT_EQ(units::convert("G2.5", "mm/s").value, 2.5e-3);
+  EXPECT_EQ(units::convert("G 6.3", "mm/s").value, 6.3e-3);
+  EXPECT_EQ(units::convert("G2.5", "N").problem->code, "E09");
+  EXPECT_TRUE(units::convert("G2.5.1", "mm/s").problem);
+}
+
 TEST(Units, ZeroNeedsNoUnitButForTemperatures) {
   for (const char* wanted : {"m", "N.m/rad", "rpm", "Hz", "kg.m^2", "deg", ""}) {
     const units::Converted c = units::convert("0", wanted);
