@@ -303,7 +303,10 @@ struct SpeedRange {
   double start = 0, stop = 0;
   int points = 2;
   std::vector<double> values;
-  bool refine_peaks = false;
+};
+/// Speeds of a response, which has peaks between them.
+struct ResponseSpeeds : SpeedRange {
+  bool refine_peaks = false;  ///< more speeds where it peaks
 };
 
 /// Static equilibria followed past limit points, the load factor (on gravity and loads) an unknown.
@@ -378,7 +381,7 @@ struct VibrationZones {
 struct UnbalanceStep {
   std::optional<VibrationZones> zones;
   double balance_grade = 0;  ///< m/s (e omega); 0: none
-  SpeedRange speed;
+  ResponseSpeeds speed;
   std::array<double, 2> operating{0, 0};  ///< range of operating speeds, rad/s; 0 0 = not given
   std::vector<double> shapes_at;  ///< speeds of operating shapes, rad/s; empty = at the peaks
   About about = About::equilibrium;
@@ -418,7 +421,7 @@ struct HarmonicStep {
   std::vector<HarmonicForce> forces;
   double speed = 0;  ///< asynchronous: rotor speed while the frequency varies
   std::optional<FrequencyRange> frequency;
-  std::optional<SpeedRange> speeds;  ///< synchronous: frequency = order x speed
+  std::optional<ResponseSpeeds> speeds;  ///< synchronous: frequency = order x speed
   double order = 1;
   bool speed_squared =
       false;  ///< amplitudes are those at the highest speed and grow with its square
@@ -459,7 +462,7 @@ struct ApiSet : Entity {
 struct ApiLimits {
   double unbalance_factor = 2, unbalance_constant = 6350;  ///< -, g mm rpm/kg
   double unbalance_speed = 0;  ///< rad/s; 0: the operating speed nearest to the mode
-  double vibration = 25.4e-6, vibration_speed = 12000 * pi / 30;  ///< m peak to peak, rad/s
+  double vibration = 25.4 / 1e6, vibration_speed = 12000 * pi / 30;  ///< m peak to peak, rad/s
   double scale = 6, clearance = 0.75;
   double damped = 2.5, margin_factor = 0.17, margin_offset = 1.5, margin_above = 0.10;
   double margin = nan;  ///< a fixed one; nan: by amplification factor

@@ -262,7 +262,7 @@ class ModelDump {
   }
 
   void range(const model::SpeedRange& r) {
-    each("range", std::array{r.start, r.stop, double(r.points), double(r.refine_peaks)});
+    each("range", std::array{r.start, r.stop, double(r.points)});
     each("values", r.values);
   }
 

@@ -102,7 +102,7 @@ TEST(Resolution, StepsThatNameAFrequency) {
   expect("harmonic", harmonic, 800, 800);
   harmonic.frequency->values = {900};
   expect("harmonic, values", harmonic, 900, 900);
-  harmonic.speeds = model::SpeedRange{10, 400, 2, {}, false};
+  harmonic.speeds = model::ResponseSpeeds{{10, 400, 2, {}}, false};
   harmonic.order = -3;
   expect("harmonic, of the speed", harmonic, 1200, 1200);
 }

@@ -8,11 +8,6 @@
 namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
-  static constexpr Option refine[] = {{"peaks",
-                                       "unbalance and harmonic responses: more points where the "
-                                       "response peaks (default of a range, not of "
-                                       "speeds one by one)"},
-                                      {"no", "the points alone"}};
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
   const bool stop =
       v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
@@ -20,9 +15,6 @@ void describe(Visitor& v, model::SpeedRange& r) {
                                 between(1, 1000000), "number of speeds, equally spaced");
   const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any,
                                    -1, "the speeds one by one");
-  int i = values ? 1 : 0;
-  v.option("refine", i, refine, "refinement");
-  r.refine_peaks = i == 0;
   if (!v.clean()) return;
   if (values && (stop || points || v.given("start")))
     v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'",
@@ -42,6 +34,17 @@ void describe(Visitor& v, model::SpeedRange& r) {
           "E21", "values",
           fmt::format("the speeds do not increase: {} after {}", units::display(r.values[k], "rpm"),
                       units::display(r.values[k - 1], "rpm")));
+}
+
+void describe(Visitor& v, model::ResponseSpeeds& r) {
+  static constexpr Option refine[] = {
+      {"peaks",
+       "more points where the response peaks (default of a range, not of speeds one by one)"},
+      {"no", "the points alone"}};
+  describe(v, static_cast<model::SpeedRange&>(r));
+  int i = v.given("values") ? 1 : 0;
+  v.option("refine", i, refine, "refinement");
+  r.refine_peaks = i == 0;
 }
 
 void describe(Visitor& v, model::IntegratorOptions& o) {
@@ -189,8 +192,9 @@ void describe_about(Visitor& v, model::About& about) {
   v.choice("about", about,
            {{"equilibrium", "the static equilibrium at the speed, under gravity and loads"},
             {"undeformed",
-             "the rotor as drawn: no gravity, no loads, no deflection; not with supports whose "
-             "stiffness is that of their load"}},
+             "the rotor as drawn: no gravity, no loads, no deflection, and of heat and axial_preload "
+             "what the supports along the axis hold; not with supports whose stiffness is that of "
+             "their load"}},
            "state that the equations are linearised about");
 }
 
@@ -285,8 +289,8 @@ void describe(Visitor& v, model::UnbalanceStep& s) {
               "zones of shaft vibration: that of every probe over the operating speeds");
   const bool grade = v.quantity(
       optional("balance_grade", "none"), s.balance_grade, "mm/s", positive,
-      "balance grade after ISO 21940-11: the unbalances of each shaft against it, at the "
-      "highest operating speed");
+      "balance grade after ISO 21940-11 (\"G2.5\" or \"2.5 mm/s\"): the unbalances of each shaft "
+      "against it, at the highest operating speed");
   if (v.clean() && !given && (zones || grade))
     v.error("E05", nullptr, "zones and grades are those of operating speeds",
             "operating_speed = [\"7000 rpm\", \"9450 rpm\"]");
