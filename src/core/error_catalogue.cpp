@@ -392,8 +392,8 @@ const std::vector<CodeInfo>& error_catalogue() {
        "beside their place and renamed, so that what was there before is unharmed.",
        ""},
       {"E92", "not a JSON file",
-       "A file that should be JSON cannot be parsed; it was probably edited or cut off by another "
-       "program.",
+       "A file that should be JSON cannot be parsed, holds a number beyond 1e308 or is nested more "
+       "than 256 deep; it was probably edited or cut off by another program.",
        ""},
       {"E93", "unknown content of a VTK output",
        "content lists any of line, surface, bearings, orbits.",
@@ -568,6 +568,16 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[[step]]\ntype = \"harmonic_response\"\nfrequency = { start = \"10 Hz\", stop = \"200 "
        "Hz\", "
        "points = 2000 }"},
+      {"W16", "rows of a table that are far apart",
+       "The coefficients of a bearing are interpolated between the rows of its table. Each row "
+       "within "
+       "the speeds of the step is left out once and interpolated from those beside it; a quarter "
+       "of "
+       "what that misses is the error to expect between rows as they are, and it exceeds 2 % of "
+       "the "
+       "largest coefficient of its kind. Critical speeds and onsets of instability follow the "
+       "coefficients: more rows where they bend.",
+       ""},
       {"W20", "left out or assumed in a conversion",
        "What another program's file says and a deck has no word for, or what a deck needs and the "
        "file does not say. The same list stands at the head of the deck.",

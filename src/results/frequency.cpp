@@ -45,7 +45,7 @@ std::vector<double> speeds_of(const model::SpeedRange& r) {
 }
 
 std::vector<double> frequencies_of(const model::FrequencyRange& r) {
-  return speeds_of({r.start, r.stop, r.points, r.values, false});
+  return speeds_of({r.start, r.stop, r.points, r.values});
 }
 
 analysis::Motion motion_of(model::MotionKind kind) { return static_cast<analysis::Motion>(kind); }

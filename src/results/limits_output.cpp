@@ -26,11 +26,11 @@ struct Extreme {
   }
 };
 
-/// A held table on its way.
-struct HeldTable {
+/// The table of a bearing on its way.
+struct WatchedTable {
   std::size_t bearing;
   Index node;                                 ///< of the shaft
-  double low, high, slack;                    ///< rad/s: what the table covers, and rounding
+  double low, high, slack;                    ///< rad/s: beyond these it is held, and rounding
   double begin = nan;                         ///< s: first step that ended beyond; NaN: none
   double least = infinity, most = -infinity;  ///< rad/s, of the shaft over the run
 };
@@ -56,23 +56,23 @@ class LimitWatch final : public analysis::Observer {
   void step(analysis::StepAccess& s) override { look(s.end()); }
   void save(OutArchive& out) const override;
   void restore(InArchive& in) override;
-  const std::vector<HeldTable>& tables() const { return tables_; }
+  const std::vector<WatchedTable>& tables() const { return tables_; }
   const std::vector<Gap>& gaps() const { return gaps_; }
   bool empty() const { return tables_.empty() && gaps_.empty(); }
 
  private:
   void look(const analysis::Snapshot& s);
-  std::vector<HeldTable> tables_;
+  std::vector<WatchedTable> tables_;
   std::vector<Gap> gaps_;
 };
 
 LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
   for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
     const auto* table = std::get_if<model::TableBearing>(&job.model.bearings[i].law);
-    if (!table || !table->extrapolate_hold || table->speed.empty()) continue;
-    const double slack = table_slack(*table);
-    tables_.push_back(
-        {i, job.mesh.bearings[i].shaft.node, table->speed.front(), table->speed.back(), slack});
+    if (!table || table->speed.empty()) continue;
+    const bool held = table->extrapolate_hold;
+    tables_.push_back({i, job.mesh.bearings[i].shaft.node, held ? table->speed.front() : -infinity,
+                       held ? table->speed.back() : infinity, table_slack(*table)});
   }
   const system::State still = job.system().make_state();
   system::Workspace w = job.system().make_workspace();
@@ -101,7 +101,7 @@ LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
 }
 
 void LimitWatch::look(const analysis::Snapshot& s) {
-  for (HeldTable& x : tables_) {
+  for (WatchedTable& x : tables_) {
     const double spin = s.node(x.node).spin();
     x.least = std::min(x.least, spin);
     x.most = std::max(x.most, spin);
@@ -116,7 +116,7 @@ void LimitWatch::look(const analysis::Snapshot& s) {
 }
 
 void LimitWatch::save(OutArchive& out) const {
-  for (const HeldTable& x : tables_)
+  for (const WatchedTable& x : tables_)
     for (const double v : {x.begin, x.least, x.most})
       out.put(v);
   for (const Gap& x : gaps_)
@@ -125,7 +125,7 @@ void LimitWatch::save(OutArchive& out) const {
 }
 
 void LimitWatch::restore(InArchive& in) {
-  for (HeldTable& x : tables_)
+  for (WatchedTable& x : tables_)
     for (double* v : {&x.begin, &x.least, &x.most})
       *v = in.number();
   for (Gap& x : gaps_)
@@ -137,7 +137,7 @@ class LimitsOutput final : public TransientOutput {
  public:
   explicit LimitsOutput(const TransientSetup& s) : watch_(s.job, s.law.linear) {
     if (s.job.model.output.report && !watch_.gaps().empty()) watch_stations(s.job);
-    for (const HeldTable& x : watch_.tables())
+    for (const WatchedTable& x : watch_.tables())
       content_ += fmt::format(" {} {} {}", x.bearing, x.low, x.high);
     for (const Gap& x : watch_.gaps())
       content_ += fmt::format(" {} {}", x.name, x.size);
@@ -193,10 +193,12 @@ class LimitsOutput final : public TransientOutput {
 };
 
 void LimitsOutput::judge_tables(TransientEnd& end) const {
-  const HeldTable* worst = nullptr;
+  const WatchedTable* worst = nullptr;
   double most = 0;
   std::string held;
-  for (const HeldTable& x : watch_.tables()) {
+  std::vector<UsedTable> used;
+  for (const WatchedTable& x : watch_.tables()) {
+    used.push_back({x.bearing, x.least, x.most});
     if (std::isnan(x.begin)) continue;
     const std::string& name = end.job.model.bearings[x.bearing].name;
     io::Value& v = end.summary["held tables"][name];
@@ -211,6 +213,7 @@ void LimitsOutput::judge_tables(TransientEnd& end) const {
     most = beyond;
     worst = &x;
   }
+  warn_of_coarse_tables(end.job, end.step.name, used);
   if (!worst) return;
   const model::Bearing& b = end.job.model.bearings[worst->bearing];
   Diagnostic d;

@@ -2,6 +2,7 @@
 #include <results/clearances.hpp>
 #include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
+#include <assembly/table_spacing.hpp>
 #include <run/diagnose.hpp>
 
 #include <fmt/format.h>
@@ -257,6 +258,39 @@ double beyond_table(const run::Job& job, const model::Bearing& b, double low, do
 
 }  // namespace
 
+void warn_of_coarse_tables(run::Job& job, const std::string& step,
+                           std::span<const UsedTable> tables) {
+  constexpr double admitted = 0.02;
+  assembly::CoarsestRow worst;
+  const model::Bearing* named = nullptr;
+  std::string others;
+  for (const UsedTable& t : tables) {
+    const model::Bearing& b = job.model.bearings[t.bearing];
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    if (!table) continue;
+    const assembly::CoarsestRow row = assembly::coarsest_row(*table, t.low, t.high);
+    if (!(row.error > admitted)) continue;
+    others += fmt::format("{}'{}'", others.empty() ? "" : ", ", b.name);
+    if (row.error <= worst.error) continue;
+    worst = row;
+    named = &b;
+  }
+  if (!named) return;
+  const std::string place = worst.against_frequency ? fmt::format("{:.6g} Hz", to_hz(worst.at))
+                                                    : fmt::format("{:.6g} rpm", to_rpm(worst.at));
+  Diagnostic d;
+  d.code = "W16";
+  d.message = fmt::format(
+      "step '{}': rows of tables are far apart for {}; most for '{}', whose coefficients beside {} "
+      "are known to about {:.2g} % only (without the row there they would be {:.2g} % off)",
+      step, others, named->name, place, 100 * worst.error, 400 * worst.error);
+  d.hint = "more rows about there";
+  d.where = named->where;
+  warn(job, std::move(d));
+}
+
+namespace {
+
 void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high) {
   const model::Bearing* worst = nullptr;
   double most = 0;
@@ -283,6 +317,19 @@ void warn_of_held_tables(run::Job& job, const std::string& step, double low, dou
   d.hint = "a table over all speeds of the step, or extrapolate = \"error\"";
   d.where = worst->where;
   warn(job, std::move(d));
+}
+
+}  // namespace
+
+void warn_of_tables(run::Job& job, const std::string& step, double low, double high) {
+  warn_of_held_tables(job, step, low, high);
+  std::vector<UsedTable> used;
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const double ratio = job.model.shafts[job.model.bearings[i].at.shaft].speed_ratio;
+    const auto [least, most] = std::minmax({ratio * low, ratio * high});
+    used.push_back({i, least, most});
+  }
+  warn_of_coarse_tables(job, step, used);
 }
 
 double admitted_excess() {

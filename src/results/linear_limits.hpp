@@ -1,6 +1,6 @@
 // Where results leave what they stand on: linear responses larger than the gaps of supports, tables
-// asked beyond their ends, bearings too long for the theory of short ones. Each is said once a step,
-// with place and size (W11, W12, W13, W03). Motions in time: limits_output.cpp.
+// asked beyond their ends or between rows far apart, bearings too long for the theory of short ones.
+// Each is said once a step, with place and size (W11, W12, W13, W16, W03). Motions in time: limits_output.cpp.
 #pragma once
 #include <results/frequency.hpp>
 #include <map>
@@ -49,9 +49,17 @@ class GapCheck {
   Tilt tilt_;
 };
 
-/// W12: bearings whose table ends within low .. high (reference speed, rad/s) and whose edge
-/// coefficients are held beyond.
-void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high);
+/// Bearings whose table ends within low .. high (reference speed, rad/s) and whose edge coefficients
+/// are held beyond (W12), and whose rows there are too far apart (W16).
+void warn_of_tables(run::Job& job, const std::string& step, double low, double high);
+/// A bearing of the model, perhaps with a table, and the speeds of its shaft, rad/s.
+struct UsedTable {
+  std::size_t bearing = 0;
+  double low = 0, high = 0;
+};
+/// W16: tables whose rows within these speeds are too far apart.
+void warn_of_coarse_tables(run::Job& job, const std::string& step,
+                           std::span<const UsedTable> tables);
 
 /// W14: an equilibrium at speed is that of the mean stiffness of a cracked shaft over a revolution.
 void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);

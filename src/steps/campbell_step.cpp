@@ -265,7 +265,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   for (const plot::CriticalMark& m : marks)
     v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(to_rpm(m.speed));
   report_mesh(s, c, law.modes);
-  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
+  results::warn_of_tables(job, step.name, o.speeds.front(), o.speeds.back());
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);

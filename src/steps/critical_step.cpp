@@ -163,7 +163,7 @@ void CriticalRun::find(bool damped) {
 
 void CriticalRun::execute() {
   s_.summary()["max speed [rpm]"] = to_rpm(law_.max_speed);
-  results::warn_of_held_tables(s_.job, s_.step.name, law_.min_speed, law_.max_speed);
+  results::warn_of_tables(s_.job, s_.step.name, law_.min_speed, law_.max_speed);
   const run::PhaseTimer timer(s_.job, "critical speeds");
   damping_ = is_damped(s_.linear, law_.max_speed);
   find(false);

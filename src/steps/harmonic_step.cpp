@@ -324,7 +324,7 @@ void HarmonicRun::judge_mesh() {
     top = std::max(top, std::abs(x.frequency));
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s_, points_.back().Omega, beyond * top);
-  results::warn_of_held_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
+  results::warn_of_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
   const double first = points_.front().Omega, last = points_.back().Omega;
   results::warn_of_growth(s_, {first, 0.5 * (first + last), last});
 }

@@ -270,7 +270,7 @@ std::string ModalRun::line() const {
 void ModalRun::execute() {
   solve();
   s_.summary()["speed [rpm]"] = to_rpm(law_.speed);
-  results::warn_of_held_tables(s_.job, s_.step.name, law_.speed, law_.speed);
+  results::warn_of_tables(s_.job, s_.step.name, law_.speed, law_.speed);
   add_modes();
   add_rates();
   s_.certify(certificate_);

@@ -241,7 +241,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   const analysis::SpeedVerdict& judged = weakest(r);
   s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
   report_mesh(s, law.modes, speeds.back());
-  results::warn_of_held_tables(job, step.name, speeds.front(), speeds.back());
+  results::warn_of_tables(job, step.name, speeds.front(), speeds.back());
   s.add_table("verdicts", verdict_table(r), false);
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(r.diagram);
   add_onsets(s, r);

@@ -362,7 +362,7 @@ void StaticRun::execute() {
   evaluate();
   judge();
   judge_mesh();
-  results::warn_of_held_tables(job_, step_.name, state_.speed, state_.speed);
+  results::warn_of_tables(job_, step_.name, state_.speed, state_.speed);
   results::warn_of_mean_crack(job_, step_.name, state_.speed != 0);
   results::warn_of_short_bearings(job_, step_.name, state_.state);
   write_tables();

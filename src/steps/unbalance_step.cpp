@@ -475,7 +475,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   io::Table found =
       peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, largest));
-  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
+  results::warn_of_tables(job, step.name, o.speeds.front(), o.speeds.back());
   results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",

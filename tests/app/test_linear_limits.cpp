@@ -1,8 +1,13 @@
 // What linear results say of their limits: a mesh too coarse (W10), a response larger than a gap
-// (W11), a table held beyond its end (W12); and nothing where there is nothing to say.
+// (W11), a table held beyond its end (W12) or with rows far apart (W16); and nothing where there is nothing to say.
 #include "deck_run.hpp"
 #include "lateral_mass.hpp"
 
+#include <assembly/table_spacing.hpp>
+#include <elements/supports/table_bearing.hpp>
+#include <fmt/format.h>
+
+using namespace whirl;
 using whirl::test::DeckRun;
 namespace io = whirl::io;
 
@@ -238,6 +243,88 @@ TEST(LinearLimits, ATransientSaysFromWhenATableIsHeld) {
   EXPECT_NEAR(held.at("fastest [rpm]").number(), 4000.0, 5.0);  // the shaft twists
   const DeckRun within(rotor("", held_table("4020") + run_up()));
   EXPECT_FALSE(within.says("W12")) << within.log;
+}
+
+namespace {
+
+/// Stiffness of a seal at the middle against rpm: a peak of a width at 2000 rpm.
+double peak_at_2000(double rpm, double width) {
+  const double x = (rpm - 2000) / width;
+  return 1e4 / (1 + x * x);
+}
+
+/// Its table from 0 to 4000 rpm.
+std::string peak_table(double width, int rows) {
+  std::string out =
+      "[[bearing]]\nname = \"seal\"\nat = \"a:end\"\ntype = \"table\"\ncolumns = "
+      "[\"speed[rpm]\", \"kyy[N/m]\", \"kzz[N/m]\"]\nrows = [";
+  for (int i = 0; i < rows; ++i) {
+    const double rpm = 4000.0 * i / (rows - 1), kk = peak_at_2000(rpm, width);
+    out += fmt::format("[{}, {}, {}], ", rpm, kk, kk);
+  }
+  return out + "]\n";
+}
+
+model::TableBearing table_of(const std::vector<double>& place, bool of_frequency, double width) {
+  model::TableBearing t;
+  (of_frequency ? t.frequency : t.speed) = place;
+  if (of_frequency) t.speed = {100.0};
+  for (const double x : place) {
+    Matrix<6> K = Matrix<6>::Zero();
+    K(1, 1) = K(2, 2) = peak_at_2000(x, width);
+    t.K.push_back(K);
+    t.C.emplace_back(Matrix<6>::Zero());
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST(LinearLimits, RowsOfATableThatAreFarApartAreNamed) {
+  const auto look = [](int rows, const std::string& step) {
+    const DeckRun run(rotor("", peak_table(1000, rows) + step));
+    EXPECT_EQ(run.exit, 0) << run.log;
+    return run.says("W16");
+  };
+  const std::string transient =
+      "[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"1900 rpm\"\n[[step]]\nname = "
+      "\"t\"\ntype = \"transient\"\nduration = \"1 ms\"\n";
+  const std::string beside_a_row =
+      "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"1900 rpm\"\n";
+  const std::string at_a_row = "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"2000 rpm\"\n";
+  for (const std::string& step : {std::string(response), transient, beside_a_row}) {
+    EXPECT_TRUE(look(7, step)) << step;
+    EXPECT_FALSE(look(41, step)) << step;
+  }
+  EXPECT_FALSE(look(7, at_a_row));
+}
+
+// The estimate is no less than the error between the rows, and not much more.
+TEST(LinearLimits, TheErrorBetweenRowsIsEstimated) {
+  for (const bool of_frequency : {false, true})
+    for (const int rows : {9, 17, 33, 65}) {
+      std::vector<double> place;
+      for (int i = 0; i < rows; ++i)
+        place.push_back(4000.0 * i / (rows - 1));
+      const model::TableBearing t = table_of(place, of_frequency, 1000);
+      const double low = of_frequency ? 100 : 0, high = of_frequency ? 100 : 4000;
+      const assembly::CoarsestRow row = assembly::coarsest_row(t, low, high);
+      EXPECT_EQ(row.against_frequency, of_frequency);
+      // between the rows as the program does
+      std::vector<elements::CoefficientValues<2>> values;
+      for (const Matrix<6>& K : t.K)
+        values.push_back({K.block<2, 2>(1, 1), Matrix<2>::Zero(), Matrix<2>::Zero()});
+      using Table = elements::CoefficientTable<2>;
+      const Table table(place, values, Table::Between::monotone_cubic, Table::Outside::hold);
+      double worst = 0;
+      for (double x = 0; x < 4000; x += 7) {
+        elements::CoefficientValues<2> v, dv;
+        table.at(x, v, dv);
+        worst = std::max(worst, std::abs(v.K(0, 0) / peak_at_2000(x, 1000) - 1));
+      }
+      EXPECT_GE(row.error, 0.7 * worst) << rows;
+      EXPECT_LE(row.error, 4 * worst) << rows;
+    }
 }
 
 TEST(LinearLimits, ALinearTransientBeyondAGapIsNamed) {
