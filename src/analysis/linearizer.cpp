@@ -3,9 +3,11 @@
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
+#include <la/direct.hpp>
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 
 #include <algorithm>
@@ -68,11 +70,47 @@ void Linearizer::take_undeformed(double Omega) {
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
   s.a.setZero();
+  relax_axially();
   system().follow(s);
   equilibrium_.reactions = VecX::Zero(system().size());
   have_ = true;
   current_ = have_forcing_ = false;
   balanced_load_ = running_.load();
+}
+
+void Linearizer::relax_axially() {
+  std::vector<unsigned char> axial(solver_.free().begin(), solver_.free().end());
+  for (Index k = 0; k < system().size(); ++k)
+    if (k % 6 != system::ux || system().node(k / 6).scalar) axial[at_(k)] = 0;
+  VecX& q = equilibrium_.state.q;
+  std::unique_ptr<la::DirectSolver<double>> direct;
+  constexpr int rounds = 20;  // shafts and linear supports need one
+  for (int round = 0; round < rounds; ++round) {
+    const bool inside =
+        running_.residual(equilibrium_.state.frames, equilibrium_.Omega, q, r_) &&
+        running_.tangent(equilibrium_.state.frames, equilibrium_.Omega, q, matrices_);
+    if (!inside) return;
+    for (Index k = 0; k < r_.size(); ++k)
+      if (!axial[at_(k)]) r_[k] = 0.0;
+    double stiffest = 0;
+    for (Index k = 0; k < r_.size(); ++k)
+      if (axial[at_(k)])
+        stiffest =
+            std::max(stiffest, std::abs(matrices_.K.block(system().pattern().diagonal(k / 6))(
+                                   system::ux, system::ux)));
+    constexpr double rounding = 1e-13;
+    if (r_.lpNorm<Eigen::Infinity>() <= rounding * stiffest * solver_.length()) return;
+    if (!direct) direct = la::make_direct_solver<double>(system().pattern(), axial);
+    if (direct->factor(matrices_, 0.0, 0.0, 1.0) != la::Status::ok)
+      throw run_error("E75",
+                      "nothing resists the axial motion of the undeformed shaft, which heat or "
+                      "preload puts under force",
+                      "hold a place of it along x, or about = \"equilibrium\"",
+                      fmt::format("node {}", direct->singular_unknown() / 6));
+    direct->solve(r_);
+    q -= r_;
+    if (r_.norm() <= 1e-12 * q.norm()) return;
+  }
 }
 
 bool Linearizer::still_balanced(double Omega) {

@@ -57,7 +57,8 @@ class Linearizer {
   /// The first equilibrium is sought from this state instead of the reference configuration.
   void start_from(const system::State& s) { first_ = s; }
   /// From now on everything is about the reference configuration, turning, without gravity and
-  /// loads. Held unknowns stand at their laws; supports answer as they do there.
+  /// loads. Held unknowns stand at their laws; supports answer as they do there. What heat and
+  /// preload leave of axial forces is in balance along x: a shaft that is free to grow has none.
   void stay_undeformed();
   /// Forcing amplitudes at the last speed, one for each of running().orders().
   /// @pre after at().
@@ -74,6 +75,9 @@ class Linearizer {
  private:
   bool still_balanced(double Omega);
   void take_undeformed(double Omega);
+  /// Balances the axial forces of the undeformed state.
+  /// @throws Error E75 when nothing resists a motion along x that is loaded.
+  void relax_axially();
   SteadySystem running_;
   EquilibriumOptions options_;
   EquilibriumSolver solver_;

@@ -293,6 +293,16 @@ void check_windows(const model::Model& m, Problems& out) {
          "no row of the histories would be written", one->where, Diagnostic::Severity::warning);
 }
 
+namespace {
+
+bool is_prestressed(const model::Shaft& s) {
+  return s.axial_preload != 0 ||
+         std::any_of(s.sections.begin(), s.sections.end(),
+                     [](const model::Section& x) { return x.temperature_rise != 0; });
+}
+
+}  // namespace
+
 /// Steps linearised about the rotor as drawn.
 void check_undeformed(const model::Model& m, Problems& out) {
   for (const model::Step& s : m.steps) {
@@ -327,6 +337,14 @@ void check_undeformed(const model::Model& m, Problems& out) {
                                     : std::find(map->bearings.begin(), map->bearings.end(),
                                                 b.name) != map->bearings.end());
     };
+    for (const model::Shaft& shaft : m.shafts)
+      if (!shaft.path.empty() && is_prestressed(shaft))
+        report(
+            out, "E26",
+            fmt::format("step '{}' is linearised about the undeformed rotor, where shaft '{}', "
+                        "whose line is not straight, is not in balance: heat or preload bends it",
+                        s.name, shaft.name),
+            "about = \"equilibrium\"", s.where);
     for (const model::Bearing& b : m.bearings)
       if (model::traits_of(b.law).needs_load && !varied_film(b))
         report(out, "E26",

@@ -116,7 +116,9 @@ bool describe_motors(Visitor& v, model::TorqueCurve& t) {
         w.quantity(required("max_torque"), m.max_torque, "N.m", positive, "limit near standstill");
         if (w.clean()) t.power = m;
       },
-      "torque power/s, limited to max_torque");
+      "torque power/s, limited to max_torque: a motor has max_torque from below zero up to the "
+      "speed "
+      "at which it has its power, a brake (negative power) opposes the spin either way");
   return induction || pulsation || dc || power;
 }
 

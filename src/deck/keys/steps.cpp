@@ -189,13 +189,14 @@ void describe_motion(Visitor& v, model::MotionKind& motion) {
 }
 
 void describe_about(Visitor& v, model::About& about) {
-  v.choice("about", about,
-           {{"equilibrium", "the static equilibrium at the speed, under gravity and loads"},
-            {"undeformed",
-             "the rotor as drawn: no gravity, no loads, no deflection, and of heat and axial_preload "
-             "what the supports along the axis hold; not with supports whose stiffness is that of "
-             "their load"}},
-           "state that the equations are linearised about");
+  v.choice(
+      "about", about,
+      {{"equilibrium", "the static equilibrium at the speed, under gravity and loads"},
+       {"undeformed",
+        "the rotor as drawn: no gravity, no loads, no deflection, and of heat and axial_preload "
+        "what the supports along the axis hold; not with supports whose stiffness is that of "
+        "their load"}},
+      "state that the equations are linearised about");
 }
 
 void describe_damping(Visitor& v, bool& damped) {
