@@ -359,15 +359,18 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
   for (const analysis::MarginRow& row : analysis::separation_margins(
            r.peaks, r.probes, {law_.operating[0], law_.operating[1]}, order_)) {
     const bool above = row.speed > law_.operating[1];
-    const double required = rule.required(row.amplification, above);
-    const bool damped = !(row.amplification >= l.damped);
+    const double required = rule.required(row.amplification_bound, above);
+    const bool damped = row.is_damped(l.damped);
     const bool passed = damped || row.actual >= required;
+    const bool undetermined = !passed && std::isnan(row.amplification);
     t.add({row.probe, to_rpm(row.speed), row.amplification, 100 * required, 100 * row.actual,
-           damped   ? "critically damped"
-           : passed ? "passed"
-                    : "FAILED"});
-    const double left = damped ? 1e3 - (std::isnan(row.amplification) ? 0 : row.amplification)
-                               : row.actual - required;
+           damped         ? "critically damped"
+           : undetermined ? "not determined"
+           : passed       ? "passed"
+                          : "FAILED"});
+    const double left = damped         ? 1e3 - row.amplification_bound
+                        : undetermined ? -infinity
+                                       : row.actual - required;
     if (left >= reserve) continue;
     reserve = left;
     worst = damped ? results::compare("separation margin", row.amplification, "AF",
@@ -375,10 +378,12 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
                    : results::compare("separation margin", 100 * row.actual, "%",
                                       Check::Rule::at_least, 100 * required);
     worst->passed = passed;
-    worst->remark = damped ? std::isnan(row.amplification)
-                                 ? "no half-power point: critically damped"
-                                 : "critically damped: no margin asked for"
-                           : fmt::format("AF {:.4g}", row.amplification);
+    worst->remark = undetermined ? "no half-power point within the speeds: not determined"
+                    : !damped
+                        ? fmt::format("AF {}{:.4g}", std::isnan(row.amplification) ? "up to " : "",
+                                      row.amplification_bound)
+                    : std::isnan(row.amplification) ? "no half-power point: critically damped"
+                                                    : "critically damped: no margin asked for";
     where =
         fmt::format("mode {}, {}, peak at {:.5g} rpm", mode.number, row.probe, to_rpm(row.speed));
     figure = bode_of(of, row.probe);

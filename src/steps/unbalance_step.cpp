@@ -312,11 +312,12 @@ std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
   return out;
 }
 
-void add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
-                 const std::vector<analysis::ResponseProbe>& probes,
-                 const std::vector<analysis::ResponsePeak>& peaks,
-                 const model::UnbalanceStep& law) {
-  if (!(law.operating[1] > 0)) return;
+/// Returns what the line on the terminal says of them.
+std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
+                        const std::vector<analysis::ResponseProbe>& probes,
+                        const std::vector<analysis::ResponsePeak>& peaks,
+                        const model::UnbalanceStep& law) {
+  if (!(law.operating[1] > 0)) return {};
   io::Table margins;
   margins.title = "Separation margins (API RP 684)";
   margins.nan_means = "no half-power point within the speeds";
@@ -326,18 +327,28 @@ void add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
                      {"required", "%", ""},
                      {"actual", "%", "negative: inside the operating range"},
                      {"result", "-", ""}};
-  int failed = 0;
+  int failed = 0, undetermined = 0;
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     for (const analysis::MarginRow& m :
          analysis::separation_margins(peaks, probes, {law.operating[0], law.operating[1]}, k)) {
       margins.add({m.probe, to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual,
                    m.critically_damped ? "critically damped"
+                   : m.undetermined    ? "not determined"
                    : m.passed          ? "passed"
                                        : "FAILED"});
-      failed += !m.passed;
+      failed += !m.passed && !m.undetermined;
+      undetermined += m.undetermined;
     }
   s.summary()["separation margins failed"] = failed;
+  s.summary()["separation margins not determined"] = undetermined;
   s.add_table("margins", std::move(margins));
+  std::string said;
+  if (failed > 0)
+    said += fmt::format(", {} separation margin{} FAILED", failed, failed > 1 ? "s" : "");
+  if (undetermined > 0)
+    said += fmt::format(", {} separation margin{} not determined (no half-power point in reach)",
+                        undetermined, undetermined > 1 ? "s" : "");
+  return said;
 }
 
 /// Shafts that turn against each other at one speed, both out of balance: what they do together
@@ -481,7 +492,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, shown, o.outputs), false);
   s.add_table("peaks", std::move(found));
-  add_margins(s, r, shown, peaks, law);
+  const std::string margins = add_margins(s, r, shown, peaks, law);
   add_probe_figures(s, r, shown, peaks);
   add_multiples(s, r, shown, o.multiples);
   add_force_figure(s, r, o.outputs);
@@ -508,9 +519,9 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
     results::warn(job, std::move(d));
   }
   const plot::DisplayUnit unit = plot::length_unit(largest.amplitude);
-  s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm", r.points.size(),
+  s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm{}", r.points.size(),
                        peaks.size(), readable(unit.factor * largest.amplitude), unit.name,
-                       to_rpm(largest.speed)));
+                       to_rpm(largest.speed), margins));
   return {std::move(o.probes), r, std::move(peaks)};
 }
 

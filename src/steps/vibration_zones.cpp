@@ -18,24 +18,35 @@ using analysis::UnbalanceResponse;
 
 namespace {
 
-/// Borders of the zones at a speed, m peak to peak.
-std::vector<double> borders_at(const model::VibrationZones& z, double Omega) {
+/// Borders of the zones of a shaft at a reference speed, m peak to peak. ratio: of its own speed.
+std::vector<double> borders_at(const model::VibrationZones& z, double Omega, double ratio) {
   if (!z.limits.empty()) return z.limits;
   std::vector<double> out;
   for (const double c : z.constants)
-    out.push_back(1e-6 * c / std::sqrt(to_rpm(std::abs(Omega))));
+    out.push_back(1e-6 * c / std::sqrt(to_rpm(std::abs(ratio * Omega))));
   return out;
+}
+
+/// Of the shaft of a probe; 1 where that stands.
+double ratio_at(results::FrequencyStep& s, const analysis::ResponseProbe& p) {
+  const double ratio = s.linear.running().ratio(s.linear.system().node(p.point.node).line);
+  return ratio == 0 ? 1.0 : ratio;
 }
 
 /// Borders over the operating speeds, in the unit of an axis of amplitudes.
 class Borders {
  public:
-  Borders(const model::VibrationZones& zones, double factor) : zones_(zones), factor_(factor) {}
-  double at(double Omega, std::size_t k) const { return factor_ * borders_at(zones_, Omega)[k]; }
+  Borders(const model::VibrationZones& zones, double ratio, double factor)
+      : zones_(zones),
+        ratio_(ratio),
+        factor_(factor) {}
+  double at(double Omega, std::size_t k) const {
+    return factor_ * borders_at(zones_, Omega, ratio_)[k];
+  }
 
  private:
   const model::VibrationZones& zones_;
-  double factor_;
+  double ratio_, factor_;
 };
 
 constexpr std::size_t zone_count = 4;
@@ -86,6 +97,7 @@ void add_patches(plot::Axes& a, const Borders& borders, const std::vector<double
 
 /// In the figures of the probes.
 void color_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
+                 const std::vector<analysis::ResponseProbe>& probes,
                  const model::UnbalanceStep& law) {
   const double factor = s.job.model.output.peak_to_peak ? 1.0 : 0.5;
   std::vector<double> speeds;
@@ -93,10 +105,13 @@ void color_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
     if (x.Omega >= law.operating[0] && x.Omega <= law.operating[1]) speeds.push_back(x.Omega);
   if (speeds.size() < 2) return;
   for (plot::Figure& f : s.section.figures) {
-    if (!f.name.ends_with("_bode")) continue;
+    const auto probe = std::find_if(probes.begin(), probes.end(), [&](const auto& p) {
+      return f.name == s.file(p.name + "_bode");
+    });
+    if (probe == probes.end()) continue;
     plot::Axes& a = f.axes.front();
     const double unit = a.y.unit == "m" ? 1 : a.y.unit == "mm" ? 1e3 : a.y.unit == "nm" ? 1e9 : 1e6;
-    const Borders borders(*law.zones, unit * factor);
+    const Borders borders(*law.zones, ratio_at(s, *probe), unit * factor);
     set_limits(a, r, borders, speeds.front());
     add_patches(a, borders, speeds, law.zones->source);
   }
@@ -113,12 +128,13 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
   t.columns = {{"probe", "-", ""},
                {"speed", "rpm", "of the operating speeds, where it comes nearest to the borders"},
                {"amplitude", "um", "major axis, peak to peak"},
-               {"A/B", "um", ""},
+               {"A/B", "um", "border of the zones, at the speed of the probe's own shaft"},
                {"B/C", "um", ""},
                {"C/D", "um", ""},
                {"zone", "-", ""}};
   for (std::size_t p = 0; p < probes.size(); ++p) {
     double nearest = -1, speed = 0, largest = 0;
+    const double ratio = ratio_at(s, probes[p]);
     for (const SteadyPoint& x : r.points) {
       const double turns = std::abs(x.Omega);
       if (turns < law.operating[0] * (1 - 1e-12) || turns > law.operating[1] * (1 + 1e-12))
@@ -126,14 +142,14 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
       double pp = 0;
       for (const auto& order : x.probe)
         pp += 2 * order[p].orbit().major;
-      const double share = pp / borders_at(*law.zones, x.Omega).front();
+      const double share = pp / borders_at(*law.zones, x.Omega, ratio).front();
       if (share <= nearest) continue;
       nearest = share;
       speed = x.Omega;
       largest = pp;
     }
     if (nearest < 0) continue;
-    const std::vector<double> b = borders_at(*law.zones, speed);
+    const std::vector<double> b = borders_at(*law.zones, speed, ratio);
     const std::string zone(1, static_cast<char>('A' + analysis::zone_of(largest, b)));
     io::Table::Cell cell = zone;
     using Mark = io::Table::Cell::Mark;
@@ -143,7 +159,7 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
     s.summary()["zones"][probes[p].name] = zone;
   }
   s.add_table("zones", std::move(t));
-  color_zones(s, r, law);
+  color_zones(s, r, probes, law);
 }
 
 void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {

@@ -51,6 +51,7 @@ TEST(Unbalance, Conformance) {
   check_kernel(UnbalanceMass(0.03, 0.4), o);
   check_kernel(UnbalanceMass(0.03, 0.4, nullptr, -0.3), o);
   check_kernel(UnbalanceMass(0.03, -2.0, make_smooth_step(0, 2, 0.3, 1.7)), o);
+  o.position = {Vec3::Zero(), Vec3(0.2, 0, 0)};
   check_kernel(LightUnbalance(0.03, 0.4, nullptr, -0.3), o);
   check_kernel(LightUnbalance(0.03, -2.0, make_smooth_step(0, 2, 0.3, 1.7)), o);
 }

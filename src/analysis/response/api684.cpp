@@ -5,8 +5,12 @@
 
 namespace whirl::analysis {
 
+namespace {
+constexpr double damped_below = 2.5;
+}
+
 double required_margin(double amplification, bool above) {
-  if (!(amplification >= 2.5)) return 0.0;
+  if (!(amplification >= damped_below)) return 0.0;
   const double sm = 0.17 * (1.0 - 1.0 / (amplification - 1.5));
   return above ? 0.10 + sm : sm;
 }
@@ -25,16 +29,16 @@ std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks
     r.amplification = p.amplification();
     r.low = p.low;
     r.high = p.high;
-    // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range
-    // of speeds.
-    r.critically_damped = !(r.amplification >= 2.5);
+    r.amplification_bound = p.amplification_bound();
+    r.critically_damped = r.is_damped(damped_below);
     const double speed = std::abs(p.speed);
     const bool above = speed > range.max;
-    r.required = required_margin(r.amplification, above);
+    r.required = required_margin(r.amplification_bound, above);
     r.actual = above               ? (speed - range.max) / range.max
                : speed < range.min ? (range.min - speed) / range.min
                                    : -std::min(speed - range.min, range.max - speed) / speed;
     r.passed = r.critically_damped || r.actual >= r.required;
+    r.undetermined = !r.passed && std::isnan(r.amplification);
     rows.push_back(r);
   }
   return rows;

@@ -21,7 +21,13 @@ struct MarginRow {
   double low = nan, high = nan;                          ///< half-power speeds, rad/s
   double required = 0,
          actual = 0;  ///< margins, fraction (0.17 = 17 %); actual < 0: inside the range
-  bool critically_damped = false;
+  double amplification_bound = nan;  ///< the factor, or what it is below where it is not known
+  /// No margin is asked for: a factor below the limit, known or not.
+  bool is_damped(double limit) const { return amplification_bound < limit; }
+  bool critically_damped = false;  ///< by RP 684, limit 2.5
+  /// Not passed with the margin of the bound, and the factor is not known: the speeds end, or a higher
+  /// peak begins, before its half-power points.
+  bool undetermined = false;
   bool passed = true;
 };
 

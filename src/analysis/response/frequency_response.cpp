@@ -27,6 +27,7 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   }
   for (const ResponseProbe& probe : options_.probes)
     p.probe.push_back(amplitude_at(linear_, a, probe.point));
+  drop_rounding(largest_displacement(linear_.system(), a), p.probe);
   for (Index k : options_.unknowns)
     p.unknown.push_back(a[k]);
   if (meter_) meter_->measure(a, force, w, options_.outputs, p.output);

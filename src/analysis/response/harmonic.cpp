@@ -236,6 +236,20 @@ PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Poin
   return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
 }
 
+double largest_displacement(const system::System& system, const VecXc& a) {
+  WHIRL_EXPECTS(a.size() == system.size());
+  double size = 0;
+  for (Index i = 0; i < system.nodes(); ++i)
+    if (!system.node(i).scalar) size = std::max(size, a.segment<3>(6 * i).norm());
+  return size;
+}
+
+void drop_rounding(double size, std::span<PointAmplitude> at) {
+  constexpr double share = 1e-11;
+  for (PointAmplitude& p : at)
+    if (p.orbit().major < share * size) p.y = p.z = 0;
+}
+
 bool DrivenProblem::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
   if (!SystemProblem::residual(t, q, v, a, r)) return false;
   r -= force;

@@ -72,6 +72,12 @@ struct PointAmplitude {
 };
 /// @pre a of length system().size(), p on one of its nodes.
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
+/// Largest displacement of a node, m.
+/// @pre a of length system.size().
+double largest_displacement(const system::System& system, const VecXc& a);
+/// Sets to zero what is rounding of displacements of this size, m: where nothing drives a place, the
+/// solution leaves something that has peaks of its own.
+void drop_rounding(double size, std::span<PointAmplitude> at);
 
 /// A system on which forces act that none of its terms gives: held unknowns pass them on.
 class DrivenProblem final : public system::SystemProblem {

@@ -21,6 +21,11 @@ double ResponsePeak::amplification() const {
   return nan;
 }
 
+double ResponsePeak::amplification_bound() const {
+  const double factor = amplification();
+  return std::isnan(factor) ? std::abs(speed) / (high_seen - low_seen) : factor;
+}
+
 UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& options)
     : linear_(linear),
       options_(options),
@@ -71,6 +76,7 @@ VecXc UnbalanceSolver::force_of(std::size_t order, double Omega) {
 SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
   SteadyPoint p;
   p.Omega = Omega;
+  double largest = 0;
   const auto orders = linear_.running().orders();
   for (std::size_t k = 0; k < orders.size(); ++k) {
     const double w = orders[k] * std::abs(Omega);
@@ -92,6 +98,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     } else {
       a = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
     }
+    largest = std::max(largest, largest_displacement(linear_.system(), a));
     p.probe.emplace_back();
     for (const ResponseProbe& probe : options_.probes)
       p.probe.back().push_back(amplitude_at(linear_, a, probe.point));
@@ -101,6 +108,8 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     }
     if (options_.shapes) p.shape.push_back(std::move(a));
   }
+  for (std::vector<PointAmplitude>& order : p.probe)
+    drop_rounding(largest, order);
   return p;
 }
 
@@ -126,10 +135,12 @@ void UnbalanceSolver::find_half_power(const std::vector<SteadyPoint>& coarse, st
   };
   for (std::size_t j = i + 1; j-- > 0;)
     if (coarse[j].Omega < peak.speed && ends_at(coarse[j], peak.low)) break;
+  peak.low_seen = std::isnan(peak.low) ? inner : peak.low;
   inner = peak.speed;
   f_inner = peak.amplitude - half;
   for (std::size_t j = i; j < coarse.size(); ++j)
     if (coarse[j].Omega > peak.speed && ends_at(coarse[j], peak.high)) break;
+  peak.high_seen = std::isnan(peak.high) ? inner : peak.high;
 }
 
 void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double high, double reach,

@@ -57,8 +57,11 @@ struct ResponsePeak {
   double phase_lag = 0;              ///< of the forward circle behind the rotor mark, rad
   double low = nan,
          high = nan;  ///< speeds with 1/sqrt(2) of the amplitude; nan: not within the range
+  double low_seen = nan, high_seen = nan;  ///< speeds between which it is larger than that
   /// Nc/(N2 - N1); from one side, Nc/(2 |N - Nc|), when the other is missing; nan without either.
   double amplification() const;
+  /// What it is not above, where it is not known: from the speeds between which it was seen.
+  double amplification_bound() const;
 };
 
 class UnbalanceSolver {
