@@ -73,6 +73,9 @@ bool ModeSolver::Impl::look_near(Complex place, double distance) {
 }
 
 bool ModeSolver::Impl::look_everywhere(const CountRegion& region) {
+  // Each search keeps clear of all that is known: its cost grows with the square of that.
+  constexpr std::size_t many = 200;
+  if (known.size() > many) return false;
   bool any = false;
   for (const double height : {0.0, 0.5, 1.0})
     for (const double left : {0.0, 0.7, 1.4, 2.1, 2.8})
@@ -85,30 +88,62 @@ Index ModeSolver::Impl::count_oscillating() const {
                        [](const Pair& p) { return oscillates(p.lambda); });
 }
 
+double ModeSolver::Impl::crowd_rate() const {
+  constexpr double round = 0.05;
+  constexpr std::ptrdiff_t crowd = 6;
+  std::vector<double> rates;
+  for (const Pair& p : known)
+    if (!oscillates(p.lambda) && p.lambda.real() < 0.0) rates.push_back(std::abs(p.lambda));
+  std::sort(rates.begin(), rates.end());
+  for (auto first = rates.begin(); rates.end() - first >= crowd; ++first)
+    if (first[crowd - 1] < (1.0 + round) * *first) return *first;
+  return infinity;
+}
+
 void ModeSolver::Impl::extend_to_count() {
-  const double given = least_radius;
+  const double given = least_radius, limit = std::min(opt.max_frequency, crude_limit());
   constexpr int rounds = 16;
   double further = 2.0;
-  for (int more = 0;
-       more < rounds && count_oscillating() < opt.count && certificate.radius < opt.max_frequency;
+  for (int more = 0; more < rounds && count_oscillating() < opt.count &&
+                     certificate.radius < std::min(limit, crowded_from);
        ++more) {
     const Index before = count_oscillating();
-    least_radius =
-        further * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
-    search_all();
+    const Certificate shorter = certificate;
+    least_radius = further * certificate.radius;
+    if (least_radius < crowd_rate()) search_all();  // else the count alone tells what is missing
     certify();
+    if (!certificate.counted && shorter.complete()) {  // no further than it can be counted
+      certificate = shorter;
+      break;
+    }
     // where nothing is new the next roots may lie decades above slow ones (controllers, free pads)
     further = count_oscillating() > before ? 2.0 : std::min(2.0 * further, 8.0);
   }
   least_radius = given;
 }
 
+bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
+  constexpr Index many = 16;
+  constexpr double short_of = 0.8;
+  const double rate = crowd_rate();
+  if (c.unknown <= many || crowded_from < infinity || oscillating_reach * radius < rate)
+    return false;
+  crowded_from = rate;
+  most_reach = short_of * rate;
+  return true;
+}
+
 bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
-  const auto is_copy = [&](Complex place) {
-    return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
+  constexpr double near = 1e-2, round = 0.3;
+  constexpr Index crowd = 16;
+  const auto within = [&](Complex place, double distance) {
+    return std::count_if(known.begin(), known.end(), [&](const Pair& p) {
       return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
-             std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
+             std::abs(p.lambda - place) < distance * std::abs(p.lambda);
     });
+  };
+  const auto is_copy = [&](Complex place) {
+    return within(place, near) > 0 || within(place, round) >= crowd;
   };
   return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
 }
@@ -149,12 +184,13 @@ bool ModeSolver::Impl::only_zeros_missing() {
 
 void ModeSolver::Impl::certify() {
   certificate = {};
+  crowded_from = most_reach = infinity;
   if (!counter) counter.emplace(pattern, active);
   const std::size_t before = known.size();
   double radius = count_radius();
   for (int round = 0; round < 6; ++round) {
     drop_unproved();
-    const CountRegion region{radius, oscillating_reach * radius};
+    const CountRegion region{radius, std::min(oscillating_reach * radius, most_reach)};
     const RootCount c = counter->count(*m, region, known_roots());
     certificate.factorizations += c.factorizations;
     certificate.radius = region.radius;
@@ -166,6 +202,7 @@ void ModeSolver::Impl::certify() {
       continue;
     }
     if (c.unknown <= 0) break;
+    if (avoid_crowd(c, radius)) continue;
     certificate.where = counter->locate(c.unknown);
     if (further_copies(certificate.where)) {
       certificate.missing = 0;

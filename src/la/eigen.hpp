@@ -62,7 +62,7 @@ struct ModeOptions {
   /// oscillate (as la::oscillates() says), in the order of their damped frequency |Im lambda|;
   /// real_roots adds every other root that the counted region holds.
   bool certify = false;
-  bool growing = false;  ///< with certify: also every root of the region with Re lambda > 0,
+  bool growing = false;  ///< with certify: on to the last root of the region with Re lambda > 0,
                          ///< whatever its number
 };
 
@@ -107,6 +107,8 @@ class ModeSolver {
   const std::vector<Mode>& solve(const MCK& m);
   /// The same, with ModeOptions::certify, for a region that reaches at least to the radius (rad/s).
   const std::vector<Mode>& solve_to(const MCK& m, double radius);
+  /// rad/s: size of the fastest root of the last problem, where it was solved whole (dense).
+  std::optional<double> fastest_root() const;
   /// Forgets what is known, so that the next solve() starts from nothing.
   void reset();
   /// The next solve() starts from what the other one, of the same pattern and options, found last.

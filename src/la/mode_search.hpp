@@ -16,6 +16,7 @@ struct ModeSolver::Impl : Eigenpairs {
                                 ///< out of the way of the searches of this call
   std::vector<Mode> result;
   std::optional<RootCounter> counter;
+  double fastest_root = 0.0;  ///< rad/s, of a problem solved whole and certified; 0: it was not
   Certificate certificate;
   static constexpr double unproved = 1e-8;  ///< backward error
 
@@ -38,6 +39,8 @@ struct ModeSolver::Impl : Eigenpairs {
   /// Everything dense: for a handful of unknowns, and for many roots in one place. within: those in
   /// it only. True: something new.
   bool solve_dense(const CountRegion* within = nullptr);
+  /// Adds what is faster than `above`, rad/s. True: something may be lost in rounding at this shift.
+  bool solve_dense_at(double above, const CountRegion* within, std::vector<Pair>& found);
   void start_from_known();
   /// Indices of the known pairs to be returned.
   std::vector<std::size_t> choose() const;
@@ -60,14 +63,22 @@ struct ModeSolver::Impl : Eigenpairs {
   /// tell them apart.
   bool look_everywhere(const CountRegion& region);
   Index count_oscillating() const;
+  /// 1/s: where known decaying roots crowd, as they do at 1/beta with damping by the stiffness, beyond
+  /// which nothing oscillates then; infinite: nowhere.
+  double crowd_rate() const;
+  /// Cuts the region to be counted short of such a crowd where many of its roots are unknown: to find
+  /// it whole costs much and says nothing. False: there is none, or it is cut off already.
+  bool avoid_crowd(const RootCount& c, double radius);
+  double crowded_from = infinity;  ///< rad/s: rate of the crowd that the region is cut short of
+  double most_reach = infinity;    ///< 1/s: of such a region
   /// All searches that lead to something new.
   void search_all();
   /// Pairs counted on the way may have turned out to be real: the search goes on until as many
   /// modes oscillate as are wanted.
   void extend_to_count();
   /// The missing roots are further copies of overdamped ones that are known: massless unknowns
-  /// under damping in proportion to their stiffness all have the one rate -1/beta. Their number
-  /// says nothing about the machine.
+  /// under damping in proportion to their stiffness all have the one rate -1/beta, and fast motions
+  /// crowd about it. Their number says nothing about the machine.
   bool further_copies(const std::vector<Complex>& places) const;
   /// Free motions whose zero roots the search could not tell apart (several at once are defective):
   /// they are counted by themselves, within a circle round zero that is small beside every other

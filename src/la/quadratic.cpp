@@ -133,6 +133,27 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
 template bool ModeSolver::Impl::search(Krylov<Complex>&, unsigned);  // certify.cpp
 
 bool ModeSolver::Impl::solve_dense(const CountRegion* within) {
+  std::vector<Pair> found;
+  if (solve_dense_at(0.0, within, found)) {
+    // What is fast beside the shift is lost in the rounding of what is slow.
+    constexpr double further = 1e4;
+    double fastest = 0.0;
+    for (const Pair& p : found)
+      fastest = std::max(fastest, std::abs(p.lambda));
+    const double slow = sigma;
+    sigma = alpha = further * slow;
+    if (factor_real(sigma)) solve_dense_at(1.001 * fastest, within, found);
+    sigma = alpha = slow;
+    if (!factor_real(sigma)) throw singular_problem();
+  }
+  const bool any = take(found, true);
+  sort_known();
+  separate_close();
+  return any;
+}
+
+bool ModeSolver::Impl::solve_dense_at(double above, const CountRegion* within,
+                                      std::vector<Pair>& found) {
   const double s = sigma;
   const Index d = dimension();
   MatX op(d, d);
@@ -146,21 +167,22 @@ bool ModeSolver::Impl::solve_dense(const CountRegion* within) {
   double largest = 0.0;
   for (Index j = 0; j < d; ++j)
     largest = std::max(largest, std::abs(eig.values(j)));
-  std::vector<Pair> found;
+  bool dropped = false;
   for (Index j = 0; j < d; ++j) {
     const Complex theta = eig.values(j);
     // Eigenvalues at infinity come out as rounding; double ones as its square root.
-    if (!(std::abs(theta) > 1e-9 * largest)) continue;
+    if (!(std::abs(theta) > 1e-9 * largest)) {
+      dropped = dropped || std::abs(theta) > 1e-15 * largest;
+      continue;
+    }
     const Complex lambda = s + 1.0 / theta;
+    if (std::abs(lambda) < above) continue;
     if (within && !within->contains(lambda)) continue;
     const bool real_vector = eig.vectors.col(j).imag().isZero(0.0);
     if (lambda.imag() >= 0.0 || real_vector)
       suggest(found, lambda, eig.vectors.col(j), true, nullptr);
   }
-  const bool any = take(found, true);
-  sort_known();
-  separate_close();
-  return any;
+  return dropped;
 }
 
 void ModeSolver::Impl::start_from_known() {
@@ -225,26 +247,28 @@ void ModeSolver::Impl::sort_by_frequency(std::vector<std::size_t>& chosen) const
 
 std::vector<std::size_t> ModeSolver::Impl::choose_counted() const {
   const CountRegion region{certificate.radius, certificate.reach};
-  // What grows is listed wherever it was counted.
+  // What grows is listed wherever it was counted, and what is slower than that: a list has no holes.
   const auto grows = [&](const Pair& p) {
     return opt.growing && region.contains(p.lambda) && p.lambda.real() > p.uncertainty;
   };
   std::vector<std::size_t> oscillating, real_ones;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Pair& p = known[i];
-    if (oscillates(p.lambda) && (p.lambda.imag() <= opt.max_frequency || grows(p)))
+    if (oscillates(p.lambda) && (p.lambda.imag() <= opt.max_frequency || region.contains(p.lambda)))
       oscillating.push_back(i);
     if (!oscillates(p.lambda) && opt.real_roots && region.contains(p.lambda))
       real_ones.push_back(i);
   }
   sort_by_frequency(oscillating);
   sort_by_frequency(real_ones);
-  if (opt.count > 0 && static_cast<Index>(oscillating.size()) > opt.count) {
-    const auto beyond = oscillating.begin() + static_cast<std::ptrdiff_t>(opt.count);
-    const auto kept =
-        std::remove_if(beyond, oscillating.end(), [&](std::size_t i) { return !grows(known[i]); });
-    oscillating.erase(kept, oscillating.end());
-  }
+  Index asked = std::count_if(oscillating.begin(), oscillating.end(), [&](std::size_t i) {
+    return known[i].lambda.imag() <= opt.max_frequency;
+  });
+  if (opt.count > 0) asked = std::min(asked, opt.count);
+  const auto last_growing = std::find_if(oscillating.rbegin(), oscillating.rend(),
+                                         [&](std::size_t i) { return grows(known[i]); });
+  const auto to_growing = static_cast<Index>(oscillating.rend() - last_growing);
+  oscillating.resize(static_cast<std::size_t>(std::max(asked, to_growing)));
   real_ones.insert(real_ones.end(), oscillating.begin(), oscillating.end());
   return real_ones;
 }
@@ -294,6 +318,7 @@ void ModeSolver::Impl::solve(const MCK& matrices) {
   prepare_operator(known.empty());
   if (!known.empty()) start_from_known();
   const bool dense = n <= opt.dense_below && !complex_shift();
+  fastest_root = 0.0;
   if (dense) {
     solve_dense();
     if (!complex_shift()) add_companions();
@@ -303,6 +328,9 @@ void ModeSolver::Impl::solve(const MCK& matrices) {
   if (opt.certify) {
     certify();
     if (!dense && opt.count > 0) extend_to_count();
+    if (dense)
+      for (const Pair& p : known)
+        fastest_root = std::max(fastest_root, std::abs(p.lambda));
   }
   // Only what is wanted, and the guard, is carried on.
   if (opt.count > 0) {
@@ -371,6 +399,10 @@ std::optional<Mode> ModeSolver::follow(const MCK& m, const Mode& start) {
   if (!impl_->polisher.polish(p, impl_->opt.tolerance, false)) return std::nullopt;
   impl_->polisher.assess(p);
   return Mode{p.lambda, p.x, p.residual, p.uncertainty, -1};
+}
+
+std::optional<double> ModeSolver::fastest_root() const {
+  return impl_->fastest_root > 0.0 ? std::optional(impl_->fastest_root) : std::nullopt;
 }
 
 const Certificate& ModeSolver::certificate() const { return impl_->certificate; }

@@ -14,7 +14,8 @@ double ShiftedOperator::scale_of(std::vector<double> sizes) {
 }
 
 double ShiftedOperator::crude_frequency() const {
-  double best = infinity;
+  constexpr double rounding = 1e-10;  // what is slower than this part of the fastest is none
+  std::vector<double> rates;
   for (Index i = 0; i < pattern.size(); ++i) {
     const Index s = pattern.diagonal(i);
     for (int c = 0; c < 6; ++c) {
@@ -22,11 +23,31 @@ double ShiftedOperator::crude_frequency() const {
       const double k = std::abs(m->K.block(s)(c, c)), mm = std::abs(m->M.block(s)(c, c)),
                    cc = std::abs(m->C.block(s)(c, c));
       if (k <= 0.0) continue;
-      if (!first_order && mm > 0.0) best = std::min(best, std::sqrt(k / mm));
-      if (first_order && cc > 0.0) best = std::min(best, k / cc);
+      if (!first_order && mm > 0.0) rates.push_back(std::sqrt(k / mm));
+      if (first_order && cc > 0.0) rates.push_back(k / cc);
     }
   }
+  if (rates.empty()) return 1.0;
+  const double least = rounding * *std::max_element(rates.begin(), rates.end());
+  double best = infinity;
+  for (const double rate : rates)
+    if (rate >= least) best = std::min(best, rate);
   return best < infinity && best > 0.0 ? best : 1.0;
+}
+
+double ShiftedOperator::crude_limit() const {
+  double most = 0.0;
+  for (Index i = 0; i < pattern.size(); ++i) {
+    const Index s = pattern.diagonal(i);
+    for (int c = 0; c < 6; ++c) {
+      if (!active[at(6 * i + c)]) continue;
+      const double kk = std::abs(m->K.block(s)(c, c)), cc = std::abs(m->C.block(s)(c, c)),
+                   mm = std::abs(m->M.block(s)(c, c));
+      if (mm > 0.0) most = std::max({most, std::sqrt(kk / mm), cc / mm});
+      if (mm == 0.0 && cc > 0.0) most = std::max(most, kk / cc);
+    }
+  }
+  return most > 0.0 ? 10.0 * most : infinity;
 }
 
 void ShiftedOperator::find_shift() {

@@ -148,6 +148,8 @@ struct ShiftedOperator {
   /// Some frequency of the problem: the lowest one a single unknown would have with all others
   /// held.
   double crude_frequency() const;
+  /// rad/s: ten times what any unknown by itself would have.
+  double crude_limit() const;
   /// A real shift of half the least nonzero |lambda|, to an order of magnitude: below it rigid-body
   /// modes make K singular, far above it the eigenvalues seen from the shift crowd together.
   void find_shift();

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <la/block_lu.hpp>
 #include <la/eigen.hpp>
+#include <la/root_count.hpp>
 
 using namespace whirl;
 using namespace whirl::la;
@@ -607,4 +608,80 @@ TEST(LinearModes, EulerBucklingOfAPinnedColumn) {
   ASSERT_EQ(near.size(), 2u);
   for (const Mode& mode : near)
     EXPECT_NEAR(mode.lambda.real(), second, 1e-10 * second);
+}
+
+// A free slide that rounding holds by 1e-20 of the stiffest spring, a signal of 1e-9 1/s and masses at
+// 1e3 and 1e6 rad/s: the shift of the slow ones left nothing of the fast ones, and the list was "0
+// modes, complete".
+TEST(QuadraticModes, SlowUnknownsHideNoFastOnes) {
+  const BlockPattern p(1, {});
+  for (const double held : {0.0, 1e-20, -1e-20})
+    for (const double rate : {1e-9, 1e-3, 1e3}) {
+      MCK m(p);
+      auto M = m.M.block(0), C = m.C.block(0), K = m.K.block(0);
+      M.diagonal() << 1, 1, 1, 0, 0, 0;
+      C.diagonal() << 0, 2, 20, 1, 0, 0;
+      K.diagonal() << held, 1e6, 1e12, rate, 0, 0;
+      const Mask a{1, 1, 1, 1, 0, 0};
+      for (const int count : {2, 6}) {
+        ModeOptions o;
+        o.count = count;
+        o.certify = true;
+        ModeSolver solver(p, a, o);
+        std::vector<double> fast;
+        for (const Mode& mode : solver.solve(m))
+          if (mode.lambda.imag() > 1.0) fast.push_back(mode.lambda.imag());
+        EXPECT_TRUE(solver.certificate().complete()) << held << " " << rate;
+        ASSERT_EQ(fast.size(), 2u) << held << " " << rate << " " << count;
+        EXPECT_NEAR(fast[0], std::sqrt(1e6 - 1), 1e-6);
+        EXPECT_NEAR(fast[1], std::sqrt(1e12 - 100), 1e-3);
+      }
+    }
+}
+
+// Damping by the stiffness, C = beta K: nothing oscillates faster than 1/beta, and all that is faster
+// crowds about -1/beta. More modes asked for than there are: the list ends, as far as it is certified.
+TEST(QuadraticModes, ACrowdOfDecayingRootsEndsAList) {
+  Shaft s;
+  s.elements = 24;
+  const BlockPattern p(25, chain(25));
+  const Mask a = pinned(p, true);
+  MCK m = shaft_matrices(p, s, 0.0);
+  const double beta = 1e-4;
+  for (std::size_t k = 0; k < m.K.value_count(); ++k)
+    m.C.data()[k] += beta * m.K.data()[k];
+  ModeOptions o;
+  o.count = 40;
+  o.certify = true;
+  ModeSolver solver(p, a, o);
+  std::size_t oscillating = 0;
+  double last = 0.0;
+  const std::vector<Mode> modes = solver.solve(m);
+  const CountRegion region{solver.certificate().radius, solver.certificate().reach};
+  for (const Mode& mode : modes)
+    if (oscillates(mode.lambda)) {
+      oscillating += region.contains(mode.lambda);
+      last = std::max(last, mode.lambda.imag());
+      // lambda^2 + beta w^2 lambda + w^2 = 0
+      const double w = std::abs(mode.lambda);
+      EXPECT_NEAR(mode.lambda.real(), -0.5 * beta * w * w, 1e-6 * w);
+    }
+  const Certificate& c = solver.certificate();
+  EXPECT_TRUE(c.complete());
+  EXPECT_GE(oscillating, 8u);
+  EXPECT_GE(c.radius, last);
+  EXPECT_LT(last, 1 / beta);
+  // by the undamped frequencies: those of the circle that the region holds
+  MCK undamped = shaft_matrices(p, s, 0.0);
+  ModeOptions all;
+  all.count = 0;
+  all.max_frequency = 2 / beta;
+  all.certify = true;
+  std::size_t expected = 0;
+  for (const Mode& mode : quadratic_modes(undamped, a, all)) {
+    const double w = mode.lambda.imag(), decay = 0.5 * beta * w * w;
+    if (decay >= w || !oscillates(Complex(-decay, std::sqrt(w * w - decay * decay)))) continue;
+    expected += decay < c.reach && std::sqrt(w * w - decay * decay) < c.radius;
+  }
+  EXPECT_EQ(oscillating, expected);
 }

@@ -333,10 +333,15 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
   // those that controllers act at, are searched.
   const double at_speed =
       std::max(whirl_of_speed * std::abs(Omega), linear_.running().running().control_bandwidth);
-  const double wanted = quiet ? quiet->above : at_speed;
+  const auto fastest = solver_.fastest_root();
+  const double wanted = quiet ? quiet->above : std::max(at_speed, 1.01 * fastest.value_or(0.0));
   if (wanted > reached) {
     modes = &solver_.solve_to(m, wanted);
     known.list = solver_.certificate();
+  }
+  if (!quiet && fastest && known.list.complete()) {
+    known.quiet_above = known.list.radius;  // no root is faster
+    known.quiet_ratio = 0.0;
   }
   return *modes;
 }
