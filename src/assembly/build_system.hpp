@@ -36,14 +36,16 @@ struct JointResult {
 };
 
 /// How a support with a gap stands: films before their clearance is used up, contacts before they
-/// close.
+/// close, magnets before the shaft stands in their poles.
 struct SupportCondition {
   static constexpr double believed = 0.99;  ///< eccentricity beyond which a film is not believed
   struct State {
-    bool film = false;
-    double gap = 0, displacement = 0;  ///< m
-    double load = 0, capacity = 0;     ///< N; capacity of a film: at the believed eccentricity
-    std::string detail{};              ///< more of where it stands, for messages: "pad 4 ..."
+    bool film = false, magnet = false;  ///< neither: a contact
+    double gap = 0, displacement = 0;   ///< m
+    double load = 0,
+           capacity =
+               0;  ///< N, of films and contacts; capacity of a film: at the believed eccentricity
+    std::string detail{};  ///< more of where it stands, for messages: "pad 4 ..."
   };
   std::size_t bearing = 0;  ///< of the model
   std::string name;
@@ -113,7 +115,7 @@ struct MagneticControl {
   std::size_t bearing = 0;          ///< of the model
   std::array<Index, 2> currents{};  ///< scalar nodes, A per current_unit
   double current_unit = 1;
-  double bandwidth = 0;  ///< rad/s, of the amplifiers
+  double bandwidth = 0;  ///< rad/s: faster motions of a rigid rotor the loop moves by less than 1 %
   std::array<Loop, 2> loops;
   /// How an axis stands.
   struct Standing {

@@ -5,6 +5,7 @@
 #include <core/contract.hpp>
 #include <elements/magnetic/magnet.hpp>
 #include <elements/magnetic/signal.hpp>
+#include <meshes/mass_properties.hpp>
 
 #include <fmt/format.h>
 
@@ -151,6 +152,15 @@ void add_magnet(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
              joint.force({&at(nodes[0]), &at(nodes[1]), &at(nodes[2]), &at(nodes[3])}, c);
          return Vec3(0.0, F.x(), F.y());
        }});
+  if (law.gap > 0)
+    a.built.conditions.push_back({number_of(a, b), b.name, b.where,
+                                  [r = displacement_of(n), gap = law.gap](const NodeAt& at) {
+                                    SupportCondition::State s;
+                                    s.magnet = true;
+                                    s.gap = gap;
+                                    s.displacement = r(at).norm();
+                                    return s;
+                                  }});
   const auto states = [nodes](const NodeAt& at) {
     return typename Kernel::Nodes{&at(nodes[0]), &at(nodes[1]), &at(nodes[2]), &at(nodes[3])};
   };
@@ -178,6 +188,19 @@ void add_magnet(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
   };
 }
 
+/// rad/s: above it the loop's force is less than a hundredth of the inertia of the shaft.
+double bandwidth_of(const Assembly& a, const model::Bearing& b, const model::MagneticBearing& law,
+                    const ControlLoop& loop) {
+  constexpr double share = 0.01, step = 1.25, furthest = 1e4;
+  const double mass = meshes::shaft_mass(a.model, b.at.shaft).mass;
+  double last = law.amplifier_bandwidth;
+  for (double w = last; w < furthest * law.amplifier_bandwidth; w *= step) {
+    const double gain = loop.system.at(Complex(0.0, w)).cwiseAbs().maxCoeff();
+    if (law.per_current * gain > share * mass * w * w) last = w;
+  }
+  return last;
+}
+
 /// A controller that grows by itself is told: it may be meant.
 void tell_unstable(Assembly& a, const model::Bearing& b, const ControlLoop& loop) {
   double fastest = 0;
@@ -198,7 +221,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     MagneticControl control;
     control.bearing = number_of(a, b);
     control.current_unit = signals.loop().current_unit;
-    control.bandwidth = law.amplifier_bandwidth;
+    control.bandwidth = bandwidth_of(a, b, law, signals.loop());
     if (n.shaft.offset == 0 && n.other.offset == 0)
       add_magnet<false>(a, b, n, law, signals, control);
     else

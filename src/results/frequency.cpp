@@ -6,6 +6,7 @@
 #include <results/linear_limits.hpp>
 #include <results/steady_rotation.hpp>
 #include <run/progress.hpp>
+#include <run/support_diagnosis.hpp>
 
 #include <fmt/format.h>
 
@@ -244,6 +245,9 @@ std::string capital(std::string text) {
 std::string stability_text(const analysis::SpectrumCertificate& c) {
   if (c.axis && c.axis->certain())
     return "no motion grows: growing roots counted along the imaginary axis, none there";
+  if (c.stability_certain() && c.quiet_ratio == 0.0)
+    return fmt::format("no motion grows at any frequency: all roots counted, none above {:.5g} Hz",
+                       to_hz(c.list.radius));
   if (c.stability_certain())
     return fmt::format(
         "no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy "
@@ -324,9 +328,15 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
   if (!job.options.quiet) run::print_diagnostics({w});
 }
 
+std::string equilibrium_at(double Omega) {
+  return fmt::format("the equilibrium at {:.6g} rpm", to_rpm(Omega));
+}
+
 void FrequencyStep::finish(const std::string& line) {
-  if (const system::State& still = linear.equilibrium().state; still.q.size() > 0)
+  if (const system::State& still = linear.equilibrium().state; still.q.size() > 0) {
     warn_of_short_bearings(job, step.name, still);
+    run::warn_of_closed_contacts(job, step, equilibrium_at(linear.Omega()), still);
+  }
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);
   if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all)

@@ -32,6 +32,8 @@ std::string direction_text(const analysis::WhirlMode& m);
 std::string stability_text(const analysis::SpectrumCertificate& c);
 /// With a capital letter.
 std::string capital(std::string text);
+/// "the equilibrium at 3000 rpm"
+std::string equilibrium_at(double Omega);
 /// Motions that do not oscillate: overdamped, free and diverging ones, by their rates.
 io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes);
 /// Forces of the supports on the shaft, N, fixed axes.

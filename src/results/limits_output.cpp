@@ -42,7 +42,7 @@ struct Gap {
   Where where;
   std::function<double(const assembly::NodeAt&)> reach;  ///< m, what counts against the gap
   double size;                                           ///< m
-  bool film;
+  bool film, magnet;
   double limit;        ///< m: displacement beyond which the law is not believed; infinite: none
   Extreme largest{};   ///< m
   double begin = nan;  ///< s: first step that ended beyond
@@ -83,20 +83,20 @@ LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
     const meshes::BearingNodes& nodes = job.mesh.bearings[c.bearing];
     if (!(x.gap > 0) || nodes.other.node < 0) continue;
     // a contact that closes is what it is for, unless the motion does not know it
-    const double share = x.film         ? assembly::SupportCondition::believed
-                         : small_motion ? 1.0
-                                        : infinity;
+    const double share = x.film                     ? assembly::SupportCondition::believed
+                         : x.magnet || small_motion ? 1.0
+                                                    : infinity;
     const auto apart = [nodes](const assembly::NodeAt& at) { return displacement_at(nodes, at); };
     gaps_.push_back({c.bearing, c.name, c.where,
                      c.reach ? c.reach : std::function<double(const assembly::NodeAt&)>(apart),
-                     x.gap, x.film, share * x.gap});
+                     x.gap, x.film, x.magnet, share * x.gap});
   }
   for (const std::size_t b : seals_of(job.model)) {
     const meshes::BearingNodes nodes = job.mesh.bearings[b];
     const double gap = seal_gap(job.model.bearings[b]);
     gaps_.push_back({b, job.model.bearings[b].name, job.model.bearings[b].where,
                      [nodes](const assembly::NodeAt& at) { return displacement_at(nodes, at); },
-                     gap, true, assembly::SupportCondition::believed * gap});
+                     gap, true, false, assembly::SupportCondition::believed * gap});
   }
 }
 
@@ -246,6 +246,18 @@ void LimitsOutput::judge_gap(TransientEnd& end, const Gap& x) {
         end.step.name, x.largest.time, 1e3 * x.largest.value, x.name, x.film ? "clearance" : "gap",
         1e3 * x.size, x.largest.value / x.size, x.begin);
     d.hint = "without linear = true the step meets the contact or the film as it is";
+  } else if (x.magnet) {
+    d.code = "W03";
+    d.message = fmt::format(
+        "step '{}': the shaft would move {:.4g} mm from the middle of magnetic bearing '{}' (at t "
+        "= "
+        "{:.6g} s; first beyond its air gap of {:.4g} mm at t = {:.6g} s): it hits the poles, "
+        "which "
+        "the force of the magnet does not know",
+        end.step.name, 1e3 * x.largest.value, x.name, x.largest.time, 1e3 * x.size, x.begin);
+    d.hint =
+        "a catcher bearing (type = \"rub\") with less play than the air gap, or a stiffer "
+        "controller";
   } else {
     d.code = "W03";
     d.message = fmt::format(

@@ -110,6 +110,7 @@ void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double freq
   const run::Job& job = step_.job;
   if (amplitudes.empty()) return;
   look_at_tilts(Omega, amplitudes, frequency);
+  look_at_forces(Omega, amplitudes, frequency);
   const std::vector<std::size_t> seals = seals_of(job.model);
   const std::vector<assembly::SupportCondition>& conditions = job.built.conditions;
   if (conditions.empty() && seals.empty()) return;
@@ -175,6 +176,45 @@ void GapCheck::look_at_tilts(double Omega, std::span<const VecXc> amplitudes, do
   }
 }
 
+void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency) {
+  const std::vector<assembly::SupportForce>& supports = step_.job.built.support_forces;
+  const system::System& sys = step_.job.system();
+  step_.linear.at(Omega);
+  const system::State& still = step_.linear.equilibrium().state;
+  system::Workspace w = sys.make_workspace();
+  w.context.averaged = step_.linear.running().running().mean;
+  w.context.time = still.t;
+  const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
+  const auto reaction = [](Index) { return 0.0; };
+  const auto forces_at = [&](const VecX& q) {
+    std::vector<Vec3> out(supports.size(), Vec3::Constant(nan));
+    if (!sys.evaluate_nodes(w, still.frames, still.t, q, still.v, still.a)) return out;
+    for (std::size_t i = 0; i < supports.size(); ++i)
+      out[i] = supports[i].force(node, w.context, reaction);
+    return out;
+  };
+  bends_.resize(supports.size());
+  constexpr int looks = 12;
+  constexpr double small = 1e-3;
+  const std::vector<Vec3> rest = forces_at(still.q);
+  std::vector<Bend> now(supports.size(), {0, 0, Omega, frequency});
+  for (int k = 0; k < looks; ++k) {
+    VecX way = VecX::Zero(still.q.size());
+    for (const VecXc& a : amplitudes)
+      way += (a * std::polar(1.0, two_pi * k / looks)).real();
+    const std::vector<Vec3> there = forces_at(still.q + way), on = forces_at(still.q + small * way),
+                            back = forces_at(still.q - small * way);
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      const Vec3 linear = (on[i] - back[i]) / (2 * small);
+      if (!linear.allFinite() || !there[i].allFinite()) continue;
+      now[i].linear = std::max(now[i].linear, linear.norm());
+      now[i].off = std::max(now[i].off, (there[i] - rest[i] - linear).norm());
+    }
+  }
+  for (std::size_t i = 0; i < supports.size(); ++i)
+    if (now[i].share() > bends_[i].share()) bends_[i] = now[i];
+}
+
 namespace {
 
 /// "at 3000 rpm and 40 Hz"
@@ -201,8 +241,40 @@ void GapCheck::report_tilt() {
   warn(step_.job, std::move(d));
 }
 
+void GapCheck::report_forces() {
+  constexpr double straight = 0.3;
+  double largest = 0;
+  for (const Bend& x : bends_)
+    largest = std::max(largest, x.linear);
+  for (std::size_t i = 0; i < bends_.size(); ++i) {
+    const Bend& x = bends_[i];
+    const assembly::SupportForce& support = step_.job.built.support_forces[i];
+    const auto worst = worst_.find(support.name);
+    const bool named = worst != worst_.end() &&
+                       (worst->second.film || worst->second.displacement > worst->second.gap);
+    // what hardly acts misleads nobody
+    if (named || x.share() <= straight || x.off <= 1e-3 * largest) continue;
+    Diagnostic d;
+    d.code = "W11";
+    d.message = fmt::format(
+        "step '{}': {} the response takes '{}' so far that its force leaves its linear part by "
+        "{:.2g} "
+        "of it: a linear response does not know it",
+        step_.step.name, place_of(x.speed, x.frequency), support.name, x.share());
+    d.hint =
+        "play that opens, a spring that stiffens or a magnet that saturates: a transient step "
+        "meets it as it is";
+    const auto& all = step_.job.model.bearings;
+    const auto of = std::find_if(all.begin(), all.end(),
+                                 [&](const model::Bearing& b) { return b.name == support.name; });
+    if (of != all.end()) d.where = of->where;
+    warn(step_.job, std::move(d));
+  }
+}
+
 void GapCheck::report(const std::string& of) {
   report_tilt();
+  report_forces();
   std::vector<UsedGap> used;
   for (const auto& [name, x] : worst_) {
     if (!(x.gap > 0)) continue;

@@ -19,9 +19,10 @@ class GapCheck {
   /// the reference speed Omega, rad/s. frequency: of the excitation where it is not the speed,
   /// rad/s.
   void look(double Omega, std::span<const VecXc> amplitudes, double frequency = nan);
-  /// W11 for every gap that a response oversteps, for tilts that are not small, and for every film of
-  /// which it takes so much that coefficients of small motions mislead; all shares into the summary
-  /// ("gaps"), and as a clearance diagram into the report. of: "response to unbalance".
+  /// W11 for every gap that a response oversteps, for tilts that are not small, for every film of
+  /// which it takes so much that coefficients of small motions mislead, and for every other support
+  /// whose force leaves its linear part (play that opens, magnets that saturate); all shares into the
+  /// summary ("gaps"), and as a clearance diagram into the report. of: "response to unbalance".
   void report(const std::string& of);
 
  private:
@@ -43,10 +44,19 @@ class GapCheck {
   void look_at(const Worst& seen, const std::string& name, double at_rest);
   void look_at_tilts(double Omega, std::span<const VecXc> amplitudes, double frequency);
   void report_tilt();
+  /// How far the force of a support leaves its linear part on the way of a response.
+  struct Bend {
+    double off = 0, linear = 0;  ///< N, the largest over a period
+    double speed = 0, frequency = nan;
+    double share() const { return linear > 0 ? off / linear : 0.0; }
+  };
+  void look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency);
+  void report_forces();
   FrequencyStep& step_;
   std::vector<double> reach_;  ///< of every station, m
   std::map<std::string, Worst> worst_;
   Tilt tilt_;
+  std::vector<Bend> bends_;  ///< of the supports
 };
 
 /// Bearings whose table ends within low .. high (reference speed, rad/s) and whose edge coefficients

@@ -148,33 +148,59 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
   return out;
 }
 
-void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start) {
+namespace {
+
+/// What a support beyond what it is for says; `at`: "at the start of step 'x'".
+Diagnostic beyond(const SupportCondition& c, const SupportCondition::State& s,
+                  const std::string& at) {
+  Diagnostic d;
+  d.severity = Diagnostic::Severity::warning;
+  d.where = c.where;
+  if (s.film) {
+    d.code = "W03";
+    d.message = fmt::format(
+        "bearing '{}' runs at eccentricity {:.5f} {}, carrying {:.4g} N: its film is believed up "
+        "to "
+        "{}, where it carries about {:.4g} N",
+        c.name, s.displacement / s.gap, at, s.load, SupportCondition::believed, s.capacity);
+    d.hint =
+        "the film is thinner than roughness and tilt allow: more speed or viscosity, less "
+        "clearance, a longer bearing, less load";
+  } else if (s.magnet) {
+    d.code = "W03";
+    d.message = fmt::format(
+        "the shaft would stand {:.4g} mm from the middle of magnetic bearing '{}' {}, whose air "
+        "gap "
+        "is {:.4g} mm: it lies on the poles, which the force of the magnet does not know",
+        1e3 * s.displacement, c.name, at, 1e3 * s.gap);
+    d.hint =
+        "a stiffer controller (integral action holds the weight), a larger bias, or a catcher "
+        "bearing (type = \"rub\") with less play than the air gap";
+  } else {
+    d.code = "W04";
+    d.message = fmt::format(
+        "contact '{}' is closed {}: displacement {:.4g} mm, gap {:.4g} mm, contact force about "
+        "{:.3g} N",
+        c.name, at, 1e3 * s.displacement, 1e3 * s.gap, s.load);
+    d.hint =
+        "a larger gap, or a set point of the bearings that lifts the shaft, opens it; the run "
+        "goes on with the contact closed";
+  }
+  if (!s.detail.empty()) d.message += "; " + s.detail;
+  return d;
+}
+
+}  // namespace
+
+void warn_of_closed_contacts(Job& job, const model::Step& step, const std::string& when,
+                             const system::State& state) {
   if (job.built.conditions.empty()) return;
-  const Conditions now(job, start.state);
+  const Conditions now(job, state);
   std::vector<Diagnostic> out;
   for (const SupportCondition& c : job.built.conditions) {
     const SupportCondition::State s = now.of(c);
     if (!(s.displacement > (s.film ? SupportCondition::believed * s.gap : s.gap))) continue;
-    Diagnostic d;
-    d.severity = Diagnostic::Severity::warning;
-    d.code = s.film ? "W03" : "W04";
-    if (s.film)
-      d.message = fmt::format(
-          "bearing '{}' runs at eccentricity {:.5f} at the start of step '{}', carrying {:.4g} N: "
-          "its film is believed up to {}, where it carries about {:.4g} N",
-          c.name, s.displacement / s.gap, step.name, s.load, SupportCondition::believed,
-          s.capacity);
-    else
-      d.message = fmt::format(
-          "contact '{}' is closed at the start of step '{}': displacement {:.4g} mm, gap {:.4g} "
-          "mm, contact force about {:.3g} N",
-          c.name, step.name, 1e3 * s.displacement, 1e3 * s.gap, s.load);
-    if (!s.detail.empty()) d.message += "; " + s.detail;
-    d.hint = s.film ? "the film is thinner than roughness and tilt allow: more speed or viscosity, "
-                      "less clearance, a longer bearing, less load"
-                    : "a larger gap, or a set point of the bearings that lifts the shaft, opens "
-                      "it; the run goes on with the contact closed";
-    d.where = c.where;
+    Diagnostic d = beyond(c, s, fmt::format("at {} of step '{}'", when, step.name));
     job.report.warnings.push_back(d.message);
     io::Value& list = job.summary["warnings"];
     list.push(d.code + ": " + d.message);

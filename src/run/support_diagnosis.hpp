@@ -14,9 +14,12 @@ namespace whirl::run {
 Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
                              const StepState& start, const Error& failed);
 
-/// Contacts that are closed in the state a step starts from, as warnings of the run (terminal,
-/// report and summary).
-void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start);
+/// Supports beyond what they are for in the state of a step, as warnings of the run (terminal, report
+/// and summary): contacts that are closed, films pressed further than they are believed, shafts in
+/// the poles of magnets. when: "the start", "the equilibrium
+/// at 3000 rpm".
+void warn_of_closed_contacts(Job& job, const model::Step& step, const std::string& when,
+                             const system::State& state);
 
 /// Which supports stand at the end of their range in a state (a table at the speed where it ends, a
 /// journal at the wall): "; ..." for the message of a motion that could not go on, empty when none

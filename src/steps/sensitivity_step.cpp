@@ -37,6 +37,7 @@ class SensitivityRun {
   struct Loop {
     std::string name;
     double peak = 0, at = 0;  ///< largest |S|; rad/s
+    bool at_end = false;      ///< of the frequencies asked for: it may be larger beyond
   };
   std::vector<analysis::OpenedLoop> opened_loops(const run::Job& job);
   void judge_stability();
@@ -54,7 +55,8 @@ class SensitivityRun {
   std::vector<double> grid_;                  ///< rad/s
   std::vector<std::vector<Complex>> values_;  ///< [frequency][loop]
   std::size_t growing_ = 0;
-  bool counted_ = false;  ///< no growing motion is missing
+  bool counted_ = false;          ///< no growing motion is missing up to that frequency
+  double counted_to_ = infinity;  ///< rad/s: above it growth is not excluded
 };
 
 std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& job) {
@@ -97,6 +99,7 @@ void SensitivityRun::judge_stability() {
     }
   }
   counted_ = certificate.complete();
+  if (!certificate.stability_certain()) counted_to_ = certificate.list.radius;
   s_.certify(certificate);
 }
 
@@ -137,7 +140,8 @@ void SensitivityRun::find_peak(std::size_t loop) {
     if (size(k) > size(top)) top = k;
   loops_[loop].at = grid_[top];
   loops_[loop].peak = size(top);
-  if (top == 0 || top + 1 == grid_.size()) return;
+  loops_[loop].at_end = top == 0 || top + 1 == grid_.size();
+  if (loops_[loop].at_end) return;
   analysis::Linearizer linear(s_.linear);
   analysis::SensitivityMeter meter(linear, opened_);
   const auto size_at = [&](double w) { return std::abs(meter.at(law_.speed, w)[loop]); };
@@ -181,8 +185,11 @@ void SensitivityRun::add_peaks() {
   io::Value& v = s_.summary();
   v["speed [rpm]"] = to_rpm(law_.speed);
   v["growing motions"] = static_cast<int>(growing_);
+  if (counted_to_ < infinity) v["growth not excluded above [Hz]"] = to_hz(counted_to_);
   for (const Loop& l : loops_) {
-    const std::string zone = growing_ > 0 ? "unstable" : counted_ ? zone_of(l.peak) : "not judged";
+    const std::string zone = growing_ > 0            ? "unstable"
+                             : counted_ && !l.at_end ? zone_of(l.peak)
+                                                     : "not judged";
     t.add({l.name, l.peak, decibel(l.peak), to_hz(l.at), zone});
     io::Value e = io::Value::object();
     e["loop"] = l.name;
@@ -228,8 +235,14 @@ std::string SensitivityRun::verdict() const {
                        growing_ == 1 ? "" : "s");
   const auto worst = std::max_element(loops_.begin(), loops_.end(),
                                       [](const Loop& a, const Loop& b) { return a.peak < b.peak; });
-  const std::string zone = counted_ ? fmt::format("zone {}", zone_of(worst->peak))
-                                    : "no zone: whether the loops are stable is not certified";
+  const std::string zone =
+      std::any_of(loops_.begin(), loops_.end(), [](const Loop& l) { return l.at_end; })
+          ? "no zone: a loop's sensitivity is largest at an end of the frequencies"
+      : !counted_ ? "no zone: whether the loops are stable is not certified"
+      : counted_to_ < infinity
+          ? fmt::format("zone {} if nothing grows above {:.5g} Hz, which is not excluded",
+                        zone_of(worst->peak), to_hz(counted_to_))
+          : fmt::format("zone {}", zone_of(worst->peak));
   return fmt::format("largest sensitivity {:.4g} ({:.3g} dB) of {} at {:.4g} Hz, {}", worst->peak,
                      decibel(worst->peak), worst->name, to_hz(worst->at), zone);
 }

@@ -232,7 +232,8 @@ void SpeedSweep::take(double Omega) {
   }
   run::StepState state{s_.linear.equilibrium().state, Omega, {}};
   judge(Omega, state);
-  if (found_++ == 0) run::warn_of_closed_contacts(job_, step_, state);
+  if (found_++ == 0)
+    run::warn_of_closed_contacts(job_, step_, results::equilibrium_at(Omega), state.state);
   add_coefficients(state);
   judge_mesh(Omega, state);
   job_.states[step_.name] = std::move(state);

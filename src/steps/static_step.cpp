@@ -170,7 +170,7 @@ StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::Static
 
 void StaticRun::settle() {
   found_ = job_.settle(state_, options_);
-  run::warn_of_closed_contacts(job_, step_, state_);
+  run::warn_of_closed_contacts(job_, step_, results::equilibrium_at(state_.speed), state_.state);
 }
 
 void StaticRun::follow_path() {

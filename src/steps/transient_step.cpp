@@ -124,7 +124,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
   using Start = model::TransientStep::Start;
   const bool steady_motion =
       step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode);
-  if (!steady_motion) run::warn_of_closed_contacts(job, step, start);
+  if (!steady_motion) run::warn_of_closed_contacts(job, step, "the start", start.state);
   return start;
 }
 

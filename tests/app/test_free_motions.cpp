@@ -1,6 +1,7 @@
 // What a deck leaves free stays free: a step of another kind changes no other, frames are held by
 // their supports alone, and what is held is said.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -180,4 +181,27 @@ report = false
                   1e-6 * angle * EI);
     }
   }
+}
+
+// 100 kg on 1e7 N/m, zeta 0.0316, weight, unbalance and a free spin. The mean of what the unbalance
+// does to the spin over a revolution is zero but for rounding, by which the list had "0 modes,
+// complete" and stability "diverges, certified".
+TEST(FreeMotions, RoundingOfAMeanHoldsNoSpin) {
+  for (const char* turned : {"0 deg", "90 deg"})
+    for (const char* law : {"linear\"\nkyy = \"1e7 N/m\"\nkzz = \"1e7 N/m\"\ncyy = \"2e3 "
+                            "N.s/m\"\nczz = \"2e3 N.s/m\"\n",
+                            "ball\"\nballs = 9\nball_diameter = \"12 mm\"\npitch_diameter = \"65 "
+                            "mm\"\n"}) {
+      const DeckRun run(whirl::test::lateral_mass(
+          100, "9.81 m/s^2",
+          fmt::format("[[bearing]]\nname = \"B\"\nat = \"mass\"\ntype = \"{}[[unbalance]]\nat = "
+                      "\"mass\"\namount = \"100 g.mm\"\nphase = \"{}\"\n[[step]]\nname = "
+                      "\"m\"\ntype = \"modal\"\nspeed = \"3000 rpm\"\n[[step]]\nname = "
+                      "\"s\"\ntype = \"stability\"\nspeed = {{ start = \"500 rpm\", stop = \"6000 "
+                      "rpm\", points = 4 }}\n[output]\nreport = false\n",
+                      law, turned)));
+      ASSERT_EQ(run.exit, 0) << run.log;
+      EXPECT_EQ(run.csv("m_modes.csv").rows.size(), 2u) << run.log;
+      EXPECT_TRUE(run.says("s: stable")) << run.log;
+    }
 }

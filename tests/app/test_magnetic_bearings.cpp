@@ -69,7 +69,7 @@ TEST(MagneticBearings, LoopsThatGrowBeyondTheFrequenciesAskedForHaveNoZone) {
   EXPECT_FALSE(d.says("zone A")) << d.log;
   EXPECT_TRUE(d.says("unstable: 2 growing motions")) << d.log;
   const DeckRun damped(mass(magnet + control(1.5e4, 0, 32), low));
-  EXPECT_TRUE(damped.says("zone A")) << damped.log;
+  EXPECT_TRUE(damped.says("no zone: a loop's sensitivity is largest at an end")) << damped.log;
 }
 
 // An amplifier that answers in 1e300 s leaves a loop open without end; no count of the roots can say
@@ -468,3 +468,45 @@ TEST(MagneticBearings, Messages) {
 }
 
 }  // namespace
+
+// A fast amplifier with a slow delay grows at 447 and 1,580 Hz, far above the amplifier's 300 Hz and
+// the frequencies asked for, at whose end the sensitivity is largest: "zone A" for both.
+TEST(MagneticBearings, FastLoopsAreSearchedAsFarAsTheyAct) {
+  const DeckRun d(
+      mass("current_stiffness = \"200 N/A\"\nposition_stiffness = \"1e6 "
+           "N/m\"\namplifier_bandwidth = \"300 Hz\"\ndelay = \"250 "
+           "us\"\n[[bearing.control]]\ntype = \"pid\"\np = \"4e4 A/m\"\nd = \"900 "
+           "A.s/m\"\nlag = \"30 us\"\n",
+           "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nfrequency = { start = \"1 "
+           "Hz\", stop = \"200 Hz\", points = 50 }\n"));
+  EXPECT_TRUE(d.says("unstable: 2 growing motions")) << d.log;
+  const DeckRun low(
+      mass(magnet + control(1.5e4, 0, 32),
+           "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nfrequency = { start = \"1 Hz\", stop "
+           "= \"20 Hz\", points = 50 }\n"));
+  EXPECT_TRUE(low.says("no zone: a loop's sensitivity is largest at an end")) << low.log;
+}
+
+// 30 kg hang 0.75 mm below the middle of a gap of 0.5 mm: an equilibrium on paper, and a shaft that
+// lies on its poles.
+TEST(MagneticBearings, AShaftInThePolesIsSaid) {
+  const auto deck = [](const char* p) {
+    return mass(fmt::format("current_stiffness = \"200 N/A\"\nbias_current = \"3 A\"\ngap = \"0.5 "
+                            "mm\"\namplifier_bandwidth = \"2.5 kHz\"\n[[bearing.control]]\ntype = "
+                            "\"pid\"\np = \"{} A/m\"\nd = \"20 A.s/m\"\nlag = \"30 us\"\n",
+                            p),
+                still + modal +
+                    "[[step]]\nname = \"h\"\ntype = \"harmonic_response\"\nfrequency = { values = "
+                    "[\"20 Hz\"] }\nforce = [{ at = \"mass\", force = [\"0 N\", \"5000 N\", \"0 "
+                    "N\"] }]\n");
+  };
+  const DeckRun weak(deck("10000"));
+  EXPECT_TRUE(
+      weak.says("of magnetic bearing 'AMB' at the equilibrium at 0 rpm of step 'st', whose "
+                "air gap is 0.5 mm"))
+      << weak.log;
+  EXPECT_TRUE(weak.says("of step 'm', whose air gap")) << weak.log;
+  const DeckRun strong(deck("15000"));
+  EXPECT_FALSE(strong.says("of step 'st', whose air gap")) << strong.log;
+  EXPECT_TRUE(strong.says("W11")) << strong.log;
+}

@@ -117,13 +117,16 @@ TEST_F(SupportRuns, GapThatNoLoadCloses) {
   // into them
   write("g.toml", std::string(rotor) + stop("near", "a:start") + stop("far", "b:end") + step);
   EXPECT_EQ(whirl("run g.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W04]: contact 'far' is closed at the start of step 'weight'")) << said_;
+  EXPECT_TRUE(
+      says("warning[W04]: contact 'far' is closed at the equilibrium at 0 rpm of step 'weight'"))
+      << said_;
   write("c.toml", std::string(rotor) + "[model]\ngravity = \"0 m/s^2\"\n" +
                       stop("near", "a:start") + stop("far", "b:end") +
                       "[[load]]\nat = \"a:end\"\nmoment = [\"0 N.m\", \"0 N.m\", \"1 N.m\"]\n" +
                       step);
   EXPECT_EQ(whirl("run c.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W04]: contact 'near' is closed at the start of step 'weight'"))
+  EXPECT_TRUE(
+      says("warning[W04]: contact 'near' is closed at the equilibrium at 0 rpm of step 'weight'"))
       << said_;
 }
 
@@ -153,7 +156,8 @@ type = "static"
 speed = "0 rpm"
 )");
   EXPECT_EQ(whirl("run d.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W04]: contact 'stop' is closed at the start of step 'weight'"))
+  EXPECT_TRUE(
+      says("warning[W04]: contact 'stop' is closed at the equilibrium at 0 rpm of step 'weight'"))
       << said_;
   std::string text = read(folder_ / "d.toml");
   text.replace(text.find("\"10 um\""), 7, "\"0.1 mm\"");
