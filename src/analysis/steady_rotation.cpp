@@ -450,8 +450,8 @@ Eigen::Map<VecX> values_of(la::BlockMatrix<6>& m) {
 /// line that turns freely would be held by it, or thrown off.
 void add_mean(const Eigen::Ref<const VecX>& mean, const Eigen::Ref<const VecX>& size,
               Eigen::Ref<VecX> out) {
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  out.array() += (mean.array().abs() > rounding * size.array()).select(mean.array(), 0.0);
+  constexpr double share = 32 * std::numeric_limits<double>::epsilon();
+  out.array() += (mean.array().abs() > share * size.array()).select(mean.array(), 0.0);
 }
 
 }  // namespace

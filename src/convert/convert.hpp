@@ -20,7 +20,7 @@ struct Converted {
 /// stations (length, diameters, lumped masses) or of bearing coefficients (speed, kxx, kxy, ..).
 /// Axes: what others call x, y across and z along the shaft become y, z across and x along.
 /// @throws Error (E02, E03: unreadable; E42: neither of these, or without what a deck must have).
-/// @param sheet of a workbook; empty: the first with cells.
+/// sheet: of a workbook; empty: the first with cells.
 Converted convert_file(const std::filesystem::path& file, const std::string& sheet = {});
 
 /// The same from text; `name` is shown in messages.
