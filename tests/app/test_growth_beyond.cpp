@@ -51,10 +51,10 @@ name = "two"
 material = "steel"
 origin = ["0 m", "1 m", "0 m"]
 columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
+rows = [["fore", 100, true], ["aft", 100, true]]
 [[disk]]
 name = "second"
-at = "two/left:end"
+at = "fore:end"
 mass = "10 kg"
 Ip = "0.1 kg.m^2"
 Id = "0.06 kg.m^2"
