@@ -113,6 +113,17 @@ void check_effects(const model::Model& m, Problems& out) {
         break;
       }
   }
+  const bool from_rest = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
+    const auto* law = std::get_if<model::TransientStep>(&s.law);
+    return law && s.from.empty() && law->previous.empty() &&
+           law->start == model::TransientStep::Start::rest;
+  });
+  if (transient && !from_rest && !m.initial.empty())
+    report(out, "W02",
+           fmt::format("the initial motion '{}' has no effect: no transient step starts from rest",
+                       m.initial.front().name),
+           "start = \"rest\" in the step: its other starts are motions of their own",
+           m.initial.front().where, Diagnostic::Severity::warning);
   if (transient) return;
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
   const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {

@@ -56,6 +56,7 @@ void Job::build_for(const model::Step& step) {
 }
 
 StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {
+  const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   if (!step.from.empty()) {
     StepState s = states.at(step.from);
     if (!speed) return s;
@@ -63,12 +64,16 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
       const meshes::Line& line = mesh.lines[l];
       const double spin = model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
-      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+      // an equilibrium has its lines at angle zero, a drive may begin elsewhere
+      const assembly::LineSpin& law = built.spins[l];
+      const double turned = in_time && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
         s.state.v[6 * n + system::spin_phi] = spin;
+        s.state.q[6 * n + system::spin_phi] += turned;
+      }
     }
     return s;
   }
-  const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   StepState s{system().make_state(), 0.0, {}};
   system::State& x = s.state;
   double reference_spin = 0.0, some_spin = 0.0;
@@ -92,6 +97,19 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
   // a reference that stands still while another line turns cannot measure the speeds
   s.speed = speed ? *speed : reference_spin != 0.0 ? reference_spin : some_spin;
   for (const model::InitialMotion& i : model.initial) {
+    const double own = x.v[6 * mesh.lines[i.shaft].first_node + system::spin_phi];
+    if (in_time && own != 0.0 && i.omega.x() != 0.0) {
+      Diagnostic d;
+      d.code = "E26";
+      d.message = fmt::format(
+          "the spin of shaft '{}' is given twice: {:.6g} rpm by its drive or the step, {:.6g} "
+          "rad/s "
+          "about x in the initial motion '{}'",
+          model.shafts[i.shaft].name, to_rpm(own), i.omega.x(), i.name);
+      d.hint = "leave out one of them";
+      d.where = i.where;
+      throw Error(Exit::deck, std::move(d));
+    }
     const meshes::Line& line = mesh.lines[i.shaft];
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
       const Mat3& chart = x.frames.chart[i.shaft];
@@ -99,7 +117,7 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
       const Mat3 R = rotation::L(chart * Vec3(0, i.gamma[0], i.gamma[1]));
       x.q.segment<3>(6 * n) += i.displacement + (R - Mat3::Identity()) * arm;
       x.q.segment<2>(6 * n + 4) = i.gamma;
-      // the line's own spin is about the tilted axis; omega is added to it
+      // the line's own spin is about the tilted axis; it stays where omega has none
       const Vec3 omega = i.omega + x.v[6 * n + system::spin_phi] * R * chart.col(0);
       const rotation::ChartRates r = rotation::rates_of_omega(i.gamma, chart.transpose() * omega);
       x.v[6 * n + system::spin_phi] = r.phi;
@@ -144,8 +162,14 @@ analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions
   } catch (const Error& e) {
     throw explain_no_equilibrium(*this, turning, start, e);
   }
+  const VecX begun = start.state.q;
   start.state = found.state;
   start.state.a.setZero();
+  // the equilibrium has its lines at angle zero
+  if (in_time)
+    for (const meshes::Line& line : mesh.lines)
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+        start.state.q[6 * n + system::spin_phi] += begun[6 * line.first_node + system::spin_phi];
   return found;
 }
 

@@ -1,6 +1,7 @@
 // States a transient step can start from beside rest and static equilibrium.
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
+#include <results/frequency.hpp>
 #include <run/checkpoint.hpp>
 #include <run/job.hpp>
 #include <steps/starts.hpp>
@@ -49,7 +50,39 @@ void take_equilibrium(const run::Job& job, const analysis::Equilibrium& e, run::
 
 }  // namespace
 
+namespace {
+
+/// The response that is steady is one about the rotor as the mean of its turn: not of every rotor.
+/// @throws Error E26 where the motion is another.
+void check_steady(const run::Job& job, const run::StepState& start) {
+  constexpr const char* hint =
+      "start = \"static\", and long enough for the motion to settle; or from another run that has";
+  const auto refuse = [&](const std::string& why) {
+    throw run_error(
+        "E26", "start = \"unbalance_response\" is a steady motion that this rotor has not: " + why,
+        hint);
+  };
+  if (results::turns_with_stiffness(job.model) || results::turns_with_inertia(job.model))
+    refuse("its stiffness or inertia turns with it, and the response at one frequency is not all");
+  for (const model::Shaft& s : job.model.shafts)
+    if (s.bow.any() && !s.bow.constant())
+      refuse(fmt::format("the thermal bow of shaft '{}' is on its way from what it is at the start",
+                         s.name));
+  const double theta = start_angle(job, start);
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    const Index n = job.mesh.lines[l].first_node;
+    const double spin = start.state.v[6 * n + system::spin_phi];
+    if (spin == 0.0 || start.speed == 0.0) continue;
+    const double angle = start.state.q[6 * n + system::spin_phi];
+    if (std::abs(angle - spin / start.speed * theta) > 1e-9)
+      refuse(fmt::format("shaft '{}' begins at an angle of its own", job.mesh.lines[l].name));
+  }
+}
+
+}  // namespace
+
 void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
+  check_steady(job, start);
   analysis::Linearizer linear = linearizer_of(job, start);
   linear.at(start.speed);
   const std::vector<VecXc> f = linear.forcing();

@@ -297,8 +297,10 @@ void describe(Visitor& v, model::InitialMotion& m) {
   std::vector<double> gamma{0, 0};
   v.quantities("tilt", gamma, "deg", any, 2, "transverse rotation (Euler vector) about y and z");
   v.vector("velocity", m.velocity, "m/s", "velocity of the point 'about'");
-  v.vector("angular_velocity", m.omega, "rad/s",
-           "angular velocity about x, y, z in space, the spin included");
+  v.vector(
+      "angular_velocity", m.omega, "rad/s",
+      "angular velocity about x, y, z in space; about x the spin, where neither a drive nor the "
+      "step gives it");
   v.vector("about", m.about, "mm",
            "point that rotation and velocity refer to, in the undeformed position");
   m.gamma = Vec2(gamma[0], gamma[1]);

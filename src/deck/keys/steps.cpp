@@ -471,23 +471,34 @@ void describe(Visitor& v, model::TransientStep& s) {
             {"unbalance_response", "in the steady response to the unbalance at the initial speed"},
             {"mode", "in static equilibrium plus a whirl mode at the initial speed"}},
            "state at the start, unless 'from' names a transient step");
-  v.integer(
+  const bool number = v.integer(
       "mode", s.mode, between(1, 10000),
       "of start = \"mode\": its number from the lowest frequency, among the modes of its kind");
-  v.choice("mode_kind", s.mode_kind,
-           {{"all", "every kind, in one row"},
-            {"lateral", "bending"},
-            {"torsional", "twist"},
-            {"axial", "along the shafts"}},
-           "of start = \"mode\": kind of the modes that are counted, by the largest share of their "
-           "energy");
-  v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive,
-             "of start = \"mode\": its largest displacement");
+  const bool kind = v.choice(
+      "mode_kind", s.mode_kind,
+      {{"all", "every kind, in one row"},
+       {"lateral", "bending"},
+       {"torsional", "twist"},
+       {"axial", "along the shafts"}},
+      "of start = \"mode\": kind of the modes that are counted, by the largest share of their "
+      "energy");
+  const bool amplitude = v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive,
+                                    "of start = \"mode\": its largest displacement");
+  if (s.start != model::TransientStep::Start::mode && (number || kind || amplitude))
+    v.error("E26",
+            number ? "mode"
+            : kind ? "mode_kind"
+                   : "mode_amplitude",
+            "a mode is that of start = \"mode\", and the step starts otherwise",
+            "start = \"mode\"");
   v.text(optional("previous", "none"), s.previous,
          "results folder of an earlier run of the same rotor; this step starts from its last state "
          "(of the checkpoint written at its end)");
   v.text(optional("previous_step", "the only one"), s.previous_step,
          "which of its transient steps");
+  if (s.previous.empty() && !s.previous_step.empty())
+    v.error("E26", "previous_step", "'previous_step' belongs to 'previous'",
+            "previous = \"results folder\"");
   s.speed0_given = v.quantity(
       optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"),
       s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
