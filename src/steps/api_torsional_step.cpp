@@ -60,9 +60,15 @@ struct Worst {
   double stress = 0, torque = 0, speed = 0, frequency = 0;  ///< Pa, N m, rad/s, rad/s
   Index element = -1;
   bool unbounded = false;
+  bool known = false;   ///< some section has diameters
   double coupling = 0;  ///< N m, the largest in a coupling
   std::string coupling_name;
 };
+
+/// Whether a torque tells the stress.
+bool has_diameters(const elements::ElementSection& s) {
+  return !s.constants && s.od1 > 0 && s.od2 > 0;
+}
 
 class TorsionalReport {
  public:
@@ -90,6 +96,8 @@ class TorsionalReport {
   };
   std::vector<Component> components_of(const model::ApiTorque& torque) const;
   std::vector<double> speeds_of(const std::vector<Component>& components) const;
+  /// Modes as high as the harmonics of the torques reach, those of the list or more.
+  void find_modes_met();
   std::vector<Complex> element_torques(const VecXc& a, const la::MCK& m) const;
   std::vector<Complex> coupling_torques(const VecXc& a, double w) const;
   void look(const std::vector<std::vector<Complex>>& elements,
@@ -99,6 +107,8 @@ class TorsionalReport {
   void add_events();
   bool add_event(const model::ApiEvent& e, io::Table& t, std::vector<double>& sum);
   std::string without_stresses() const;
+  /// Of some section.
+  bool stress_is_known() const;
   std::string source(const char* key) const {
     return results::source_of(law_.standard, law_.given, law_.source, {key});
   }
@@ -106,7 +116,7 @@ class TorsionalReport {
   const model::ApiTorsionalStep& law_;
   results::FrequencyStep s_;
   results::Compliance checks_;
-  std::vector<analysis::WhirlMode> modes_;
+  std::vector<analysis::WhirlMode> modes_, met_;
   std::vector<Excitation> excitations_;
 };
 
@@ -319,7 +329,7 @@ std::vector<double> TorsionalReport::speeds_of(const std::vector<Component>& com
   for (int k = 0; k <= points; ++k)
     out.push_back(low + (high - low) * k / points);
   for (const Component& c : components)
-    for (const analysis::WhirlMode& m : modes_) {
+    for (const analysis::WhirlMode& m : met_) {
       if (!c.excitation.follows()) break;
       // the peak of a damped mode lies within its width
       for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0})
@@ -330,6 +340,22 @@ std::vector<double> TorsionalReport::speeds_of(const std::vector<Component>& com
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
+}
+
+void TorsionalReport::find_modes_met() {
+  double highest = 0;
+  for (const model::ApiTorque& t : law_.torques)
+    for (const Component& c : components_of(t))
+      highest = std::max(highest, c.excitation.at(law_.operating[1]));
+  met_ = modes_;
+  if (!modes_.empty() && highest <= modes_.back().frequency) return;
+  analysis::ModesOptions o;
+  o.count = 0;
+  o.max_frequency = 1.05 * highest;
+  o.motion = analysis::Motion::torsional;
+  analysis::SpectrumCertificate certificate;
+  met_ = analysis::whirl_modes(s_.linear, law_.operating[1], o, &certificate);
+  if (!certificate.complete()) s_.certify(certificate, "of the modes that torques meet");
 }
 
 /// Of every element of the shafts: the coupling of neighbours is its GJ/l.
@@ -370,15 +396,21 @@ void TorsionalReport::look(const std::vector<std::vector<Complex>>& elements,
       parts[k] = lists[k][i];
     return 0.5 * calc_swing(parts, orders);
   };
+  // nothing damps a resonance that magnifies so much but rounding
+  constexpr double limitless = 1e7;
+  double largest = 0;
+  for (const Component& c : components)
+    largest = std::max(largest, std::abs(c.amplitude));
   for (std::size_t i = 0; i < s_.job.mesh.elements.size(); ++i) {
     const double torque = amplitude(elements, i);
-    if (!std::isfinite(torque)) {
+    if (!(torque < limitless * largest)) {
       worst.unbounded = true;
       continue;
     }
     const elements::ElementSection section =
         assembly::element_section(s_.job.model, s_.job.mesh.elements[i]);
-    if (section.constants) continue;
+    if (!has_diameters(section)) continue;
+    worst.known = true;
     for (const auto& [od, id] :
          {std::pair{section.od1, section.id1}, std::pair{section.od2, section.id2}}) {
       const double stress = law_.concentration * torque * 0.5 * od / elements::annulus_J(od, id);
@@ -432,6 +464,7 @@ Worst TorsionalReport::respond(const model::ApiTorque& torque) {
 
 void TorsionalReport::add_stresses() {
   if (law_.torques.empty()) return;
+  find_modes_met();
   io::Table t;
   t.title = "Response to the torques, largest over the operating speeds";
   t.columns = {{"torque", "-", ""},
@@ -445,6 +478,7 @@ void TorsionalReport::add_stresses() {
                {"shear stress", "MPa", "0 to peak, with the concentration"},
                {"coupling", "-", "with the largest torque"},
                {"torque in the coupling", "N m", "0 to peak"}};
+  t.nan_means = "a resonance without damping, or no section has diameters";
   for (const model::ApiTorque& torque : law_.torques) {
     const Worst w = respond(torque);
     std::string shaft;
@@ -458,18 +492,20 @@ void TorsionalReport::add_stresses() {
     double amplitude = torque.amplitude;
     for (const model::ApiHarmonic& h : torque.harmonics)
       amplitude = std::max(amplitude, h.amplitude);
-    t.add({torque.name, amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to, w.torque,
-           1e-6 * w.stress, w.coupling_name, w.coupling});
-    Check c =
-        law_.stress_limit > 0
-            ? results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::at_most,
-                               1e-6 * law_.stress_limit)
-            : results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::none, nan);
+    const double stress = w.known && !w.unbounded ? 1e-6 * w.stress : nan;
+    t.add({torque.name, amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to,
+           std::isnan(stress) ? nan : w.torque, stress, w.coupling_name,
+           w.unbounded ? nan : w.coupling});
+    const bool judged = law_.stress_limit > 0 && !std::isnan(stress);
+    Check c = judged ? results::compare("torsional stress", stress, "MPa", Check::Rule::at_most,
+                                        1e-6 * law_.stress_limit)
+                     : results::compare("torsional stress", stress, "MPa", Check::Rule::none, nan);
     c.where = fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(w.speed));
     c.source = law_.stress_limit > 0 ? source("stress_limit") : "";
     c.remark = without_stresses();
     c.figure = s_.file("interference");
     if (w.unbounded) {
+      c.judged = true;
       c.passed = false;
       c.remark = "a resonance without damping lies within the operating speeds";
     }
@@ -485,13 +521,19 @@ const model::ShaftTorques& strengths_of(const model::Model& m, const std::string
   return *std::get<model::TransientStep>(of->law).torques;
 }
 
+bool TorsionalReport::stress_is_known() const {
+  const auto& all = s_.job.mesh.elements;
+  return std::any_of(all.begin(), all.end(), [this](const meshes::Element& e) {
+    return has_diameters(assembly::element_section(s_.job.model, e));
+  });
+}
+
 std::string TorsionalReport::without_stresses() const {
   std::string out;
   for (const meshes::Element& e : s_.job.mesh.elements) {
     const std::string& line = s_.job.mesh.lines[static_cast<std::size_t>(e.line)].name;
-    if (!assembly::element_section(s_.job.model, e).constants || out.ends_with(line)) continue;
-    out += (out.empty() ? "no stress is known where a section is given by its constants: " : ", ") +
-           line;
+    if (has_diameters(assembly::element_section(s_.job.model, e)) || out.ends_with(line)) continue;
+    out += (out.empty() ? "no stress is known where a section has no diameters: " : ", ") + line;
   }
   return out;
 }
@@ -505,12 +547,13 @@ bool TorsionalReport::add_event(const model::ApiEvent& e, io::Table& t, std::vec
     sum[k] += e.times * d.damage[k];
   const std::string place = results::element_name(s_.job.mesh, most);
   const bool counts = !d.damage.empty();
-  t.add({e.name, e.step, e.times, 1e-6 * d.stress[most], place,
-         counts ? *std::max_element(d.damage.begin(), d.damage.end()) : nan});
+  t.add({e.name, e.step, e.times, stress_is_known() ? 1e-6 * d.stress[most] : nan, place,
+         counts && stress_is_known() ? *std::max_element(d.damage.begin(), d.damage.end()) : nan});
   const double yield = strengths_of(s_.job.model, e.step).yield;
-  Check c = results::compare("transient stress", 1e-6 * d.stress[most], "MPa",
-                             yield > 0 ? Check::Rule::at_most : Check::Rule::none,
-                             yield > 0 ? 1e-6 * yield : nan);
+  const bool judged = yield > 0 && stress_is_known();
+  Check c = results::compare("transient stress", stress_is_known() ? 1e-6 * d.stress[most] : nan,
+                             "MPa", judged ? Check::Rule::at_most : Check::Rule::none,
+                             judged ? 1e-6 * yield : nan);
   c.where = fmt::format("{}, {}", e.name, place);
   c.source = yield > 0 ? "yield stress of the deck" : "";
   c.remark = without_stresses();
@@ -531,7 +574,7 @@ void TorsionalReport::add_events() {
                {"shear stress", "MPa", "largest"},
                {"shaft", "-", "with the largest stress"},
                {"damage", "-", "share of the life of one of them, largest"}};
-  t.nan_means = "no fatigue is asked for in that step";
+  t.nan_means = "no fatigue is asked for in that step, or no section has diameters";
   std::vector<double> sum(elements, 0.0);
   std::string uncounted;
   std::size_t counted = 0;
@@ -545,13 +588,15 @@ void TorsionalReport::add_events() {
   if (counted == 0) return;
   const auto worst =
       static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
-  Check c =
-      results::compare("fatigue damage", sum[worst], "-", Check::Rule::at_most, law_.damage_limit);
+  Check c = stress_is_known()
+                ? results::compare("fatigue damage", sum[worst], "-", Check::Rule::at_most,
+                                   law_.damage_limit)
+                : results::compare("fatigue damage", nan, "-", Check::Rule::none, nan);
   c.where = results::element_name(s_.job.mesh, worst);
   const bool given =
       std::find(law_.given.begin(), law_.given.end(), "damage_limit") != law_.given.end();
   c.source = given ? source("damage_limit") : "Palmgren, Miner";
-  c.remark = uncounted;
+  c.remark = stress_is_known() ? uncounted : without_stresses();
   c.figure = law_.events.front().step + "_shear_stress";
   checks_.add(std::move(c));
 }

@@ -165,7 +165,7 @@ VecXc Balancing::respond(const model::Model& m) const {
 
 void Balancing::find_influence() {
   const auto planes = static_cast<Index>(law_.planes.size());
-  influence_.resize(static_cast<Index>(sensors_.size()), planes);
+  influence_ = MatXc::Constant(static_cast<Index>(sensors_.size()), planes, Complex(nan, nan));
   for (const model::TrialRun& t : law_.trials)
     influence_.col(plane_of(step_, law_, t)) =
         (measured(t.run) - before_) / std::polar(t.amount, t.phase);

@@ -28,6 +28,13 @@ double first_factor(const std::vector<analysis::BucklingMode>& modes) {
   return nan;
 }
 
+/// "8.41", "-24.95 +- 16.75i"
+std::string text_of(Complex factor) {
+  return factor.imag() == 0.0
+             ? fmt::format("{:.6g}", factor.real())
+             : fmt::format("{:.6g} +- {:.6g}i", factor.real(), std::abs(factor.imag()));
+}
+
 std::string describe(const analysis::PathCheck& p) {
   if (p.found)
     return fmt::format(
@@ -147,12 +154,13 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
     table.add({static_cast<int>(k + 1), m.factor.real(), m.factor.imag(), m.rotation,
                m.displacement, checked ? io::Table::Cell(path->load) : io::Table::Cell("")});
     v["load factors"].push(m.factor.real());
+    v["imaginary parts of load factors"].push(m.factor.imag());
     v["rotations before buckling [rad]"].push(m.rotation);
     v["displacements before buckling [-]"].push(m.displacement);
     const std::string name = fmt::format("buckling_{}", k + 1);
     results::add_shape_figures(
         s, {name,
-            fmt::format("Buckling shape {}: load factor {:.6g}", k + 1, m.factor.real()),
+            fmt::format("Buckling shape {}: load factor {}", k + 1, text_of(m.factor)),
             {},
             &m.x,
             analysis::ModeKind::lateral});
@@ -164,10 +172,19 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
       "derivative with the loads at the unloaded state.";
   const std::string unstable = say_unstable(s, count);
   const std::string known = certify(s, count);
-  std::string line = modes.empty()
-                         ? "no buckling load"
-                         : fmt::format("smallest load factor {:.6g}",
-                                       std::isnan(first) ? modes.front().factor.real() : first);
+  const auto is_real = [](const analysis::BucklingMode& m) { return m.factor.imag() == 0.0; };
+  std::string line = "no buckling load";
+  if (!std::isnan(first))
+    line = fmt::format("smallest load factor {:.6g}", first);
+  else if (!modes.empty() && is_real(modes.front()))
+    line =
+        fmt::format("no buckling load; with all loads reversed {}", text_of(-modes.front().factor));
+  else if (!modes.empty())
+    line = fmt::format(
+        "no buckling load among {} factors (the first, {}, is complex: the loads follow the "
+        "motion, "
+        "and what they may cause is growing whirl)",
+        modes.size(), text_of(modes.front().factor));
   if (path) {
     const auto of_first = [&](const analysis::BucklingMode& m) {
       return m.factor == Complex(first);

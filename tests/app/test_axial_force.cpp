@@ -122,3 +122,34 @@ TEST(AxialForce, IsALoadThatBuckles) {
   ASSERT_NE(at, std::string::npos) << d.log;
   EXPECT_NEAR(std::stod(d.log.substr(at + 21)), critical / P, 1e-3 * critical / P);
 }
+
+// Beck's column: a push that follows the free end causes no buckling, but flutter. The real part of a
+// complex factor was told as its buckling load.
+TEST(AxialForce, AFollowingPushHasNoBucklingLoad) {
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "s"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 1000, 20, 10], ["b", 1000, 20, 10]]
+[[load]]
+at = "b:end"
+frame = "rotating"
+force = ["-1000 N", "0 N", "0 N"]
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[step]]
+name = "b"
+type = "buckling"
+modes = 4
+[output]
+report = false
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_NE(d.log.find("no buckling load"), std::string::npos) << d.log;
+  EXPECT_EQ(d.log.find("smallest load factor"), std::string::npos) << d.log;
+}

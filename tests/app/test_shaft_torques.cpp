@@ -297,3 +297,71 @@ report = false
   EXPECT_NEAR(row.at("frequency [Hz]"), f, 1e-9);
   EXPECT_NEAR(row.at("torque in the shaft [N m]"), 7.5 / (1 - std::pow(f / natural, 2)), 1e-5);
 }
+
+namespace {
+
+/// Three wheels on a shaft, and a torque of 2 N m on the first. `section`: rows or tables of the shaft.
+std::string three_wheels(const std::string& section, const std::string& steps) {
+  std::string deck =
+      "format = 1\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = \"s\"\nmaterial = "
+      "\"steel\"\ndamping = { torsion_beta = \"1e-7 s\" }\n" +
+      section;
+  for (const char* wheel :
+       {"at = \"a:start\"\nIp = \"0.3 kg.m^2\"", "at = \"a:end\"\nIp = \"0.2 kg.m^2\"",
+        "at = \"b:end\"\nIp = \"0.1 kg.m^2\""})
+    deck += std::string("[[disk]]\nmass = \"20 kg\"\n") + wheel + "\n";
+  for (const char* place : {"a:start", "b:end"})
+    deck += std::string(
+                "[[bearing]]\ntype = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = \"2e7 N/m\"\nkzz = "
+                "\"1e7 N/m\"\nat = \"") +
+            place + "\"\n";
+  return deck + steps + "[output]\nreport = false\n";
+}
+const std::string round_sections =
+    "columns = [\"name\", \"length[mm]\", \"od[mm]\", \"min_elements\"]\nrows = [[\"a\", 400, 50, "
+    "2], "
+    "[\"b\", 400, 50, 2]]\n";
+std::string train(const std::string& name, int modes) {
+  return "[[step]]\nname = \"" + name +
+         "\"\ntype = \"api_torsional\"\noperating_speed = [\"10000 "
+         "rpm\", \"15000 rpm\"]\nmodes = " +
+         std::to_string(modes) +
+         "\nmultiples = [9]\nstress_limit = \"20 MPa\"\n[[step.torque]]\nname = \"x\"\nat = "
+         "\"a:start\"\norder = 1\namplitude = \"2 N.m\"\n";
+}
+
+}  // namespace
+
+// The torque meets the second mode at 11,000 rpm: a list of one mode is no reason to look elsewhere.
+TEST(ShaftTorques, ResonancesBeyondTheListOfModesAreMet) {
+  const DeckRun run(three_wheels(round_sections, train("few", 1) + train("many", 6)));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const auto few = run.csv("few_stresses.csv").last(), many = run.csv("many_stresses.csv").last();
+  EXPECT_NEAR(few.at("shear stress [MPa]"), many.at("shear stress [MPa]"),
+              1e-6 * many.at("shear stress [MPa]"));
+  EXPECT_GT(many.at("shear stress [MPa]"), 20.0);
+  EXPECT_TRUE(run.says("FAILED")) << run.log;
+}
+
+// Sections given by their constants have no diameter: 0 MPa "passed".
+TEST(ShaftTorques, AStressThatIsNotKnownIsNotPassed) {
+  std::string general;
+  for (const char* name : {"a", "b"})
+    general +=
+        std::string("[[shaft.section]]\nname = \"") + name +
+        "\"\nlength = \"400 mm\"\ngeneral = { A = \"1000 mm^2\", Iy = \"2e4 mm^4\", Iz = \"5e5 "
+        "mm^4\", J = \"9e4 mm^4\", kappa_y = 0.85, kappa_z = 0.85 }\n";
+  const DeckRun run(three_wheels(general, train("t", 6)));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("no stress is known where a section has no diameters: s")) << run.log;
+  EXPECT_TRUE(std::isnan(run.csv("t_stresses.csv").last().at("shear stress [MPa]"))) << run.log;
+}
+
+// Nothing damps the torsion: 3e10 MPa, "for information".
+TEST(ShaftTorques, AResonanceThatNothingDampsIsNamed) {
+  std::string deck = three_wheels(round_sections, train("t", 6));
+  deck.erase(deck.find("damping = "), deck.find("columns") - deck.find("damping = "));
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("a resonance without damping lies within the operating speeds")) << run.log;
+}

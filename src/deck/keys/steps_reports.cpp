@@ -180,9 +180,10 @@ void describe(Visitor& v, model::ApiLateralStep& s) {
   const bool trip = v.quantity(optional("trip_speed", "the highest operating speed"), s.trip, "rpm",
                                positive, "clearances are looked at up to this speed");
   std::vector<double> range;
-  const bool given =
-      v.quantities(optional("response_speed", "a tenth of the lowest to 1.25 of the trip speed"),
-                   range, "rpm", positive, 2, "first and last speed of the unbalance response");
+  const bool given = v.quantities(
+      optional("response_speed",
+               "a tenth of the lowest to 1.25 of the trip speed, and to 1.3 of the highest"),
+      range, "rpm", positive, 2, "first and last speed of the unbalance response");
   v.integer("points", s.points, between(3, 1000000),
             "speeds of the response, before those at its peaks");
   v.texts(optional("bearings", "all that carry laterally to the ground, but seals"), s.bearings,
@@ -223,7 +224,9 @@ void describe(Visitor& v, model::ApiLateralStep& s) {
   if (s.trip < s.operating[1])
     return v.error("E21", "trip_speed", "the trip speed is below the highest operating speed");
   s.min_speed = given ? range[0] : 0.1 * s.operating[0];
-  s.max_speed = given ? range[1] : 1.25 * s.trip;
+  // peaks up to the largest margin that may be asked for above the operating speeds are to be seen
+  const double furthest = 1.03 + s.limits.margin_above + s.limits.margin_factor;
+  s.max_speed = given ? range[1] : std::max(1.25 * s.trip, furthest * s.operating[1]);
   if (s.min_speed >= s.max_speed)
     return v.error("E21", "response_speed", "the response ends below its start");
   if (given && (s.max_speed < s.trip || s.min_speed > s.operating[0]))
@@ -320,6 +323,15 @@ void describe(Visitor& v, model::BalancingStep& s) {
     return v.error(
         "E26", "trial",
         fmt::format("{} trial runs for {} planes: one for each", s.trials.size(), s.planes.size()));
+  for (const model::TrialRun& t : s.trials) {
+    const auto same = [&](const model::TrialRun& other) { return other.plane == t.plane; };
+    if (std::count_if(s.trials.begin(), s.trials.end(), same) > 1)
+      return v.error("E26", "trial",
+                     fmt::format("two trial runs have their mass in plane '{}', so that another "
+                                 "plane has none",
+                                 t.plane),
+                     "one for each plane");
+  }
   if (s.initial.empty() && !s.measured.empty()) s.initial = s.measured.front().run;
 }
 
