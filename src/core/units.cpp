@@ -122,6 +122,14 @@ class Parser {
     if (peek() == ',') {
       std::string fixed(s_);
       fixed[i_] = '.';
+      const auto digit = [this](std::size_t k) { return peek(k) >= '0' && peek(k) <= '9'; };
+      if (digit(1) && digit(2) && digit(3) && !digit(4)) {
+        std::string joined(s_);
+        joined.erase(i_, 1);
+        fail("E12", fmt::format("\"{}\" has a comma inside a number", s_),
+             fmt::format("write \"{}\" for thousands, \"{}\" for a decimal point", joined, fixed),
+             i_, 1);
+      }
       fail("E12", fmt::format("\"{}\" has a comma inside a number", s_),
            fmt::format("write a decimal point (\"{}\") and no thousands separator", fixed), i_, 1);
     }

@@ -216,7 +216,7 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
     s.x.push_back(rpm_[r]);
     s.y.push_back(plot::factor_of(convention_) * unit.factor * radii.size[r]);
   }
-  a.series.push_back(std::move(up));
+  if (up.x.size() > 1 || down.x.empty()) a.series.push_back(std::move(up));
   if (!down.x.empty()) a.series.push_back(std::move(down));
   add(probe + "_amplitude", probe + ": orbit radius against spin", {std::move(a)});
 }

@@ -197,7 +197,9 @@ void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, d
   constexpr int looks = 12;
   constexpr double small = 1e-3;
   const std::vector<Vec3> rest = forces_at(still.q);
-  std::vector<Bend> now(supports.size(), {0, 0, Omega, frequency});
+  std::vector<Bend> now;
+  for (const Vec3& force : rest)
+    now.push_back({0, 0, force.norm(), Omega, frequency});
   for (int k = 0; k < looks; ++k) {
     VecX way = VecX::Zero(still.q.size());
     for (const VecXc& a : amplitudes)
@@ -252,8 +254,9 @@ void GapCheck::report_forces() {
     const auto worst = worst_.find(support.name);
     const bool named = worst != worst_.end() &&
                        (worst->second.film || worst->second.displacement > worst->second.gap);
-    // what hardly acts misleads nobody
-    if (named || x.share() <= straight || x.off <= 1e-3 * largest) continue;
+    // what hardly acts misleads nobody, nor does rounding of what stands still
+    if (named || x.share() <= straight || x.off <= 1e-3 * largest || x.off <= 1e-8 * x.still)
+      continue;
     Diagnostic d;
     d.code = "W11";
     d.message = fmt::format(

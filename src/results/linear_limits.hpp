@@ -47,6 +47,7 @@ class GapCheck {
   /// How far the force of a support leaves its linear part on the way of a response.
   struct Bend {
     double off = 0, linear = 0;  ///< N, the largest over a period
+    double still = 0;            ///< N, at rest
     double speed = 0, frequency = nan;
     double share() const { return linear > 0 ? off / linear : 0.0; }
   };

@@ -87,7 +87,7 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
       s.y = {locus.y[k]};
       s.point_names = {locus.point_names[k]};
       a.series.push_back(std::move(s));
-      a.notes.push_back({locus.x[k], locus.y[k], locus.point_names[k], false});
+      a.notes.push_back({locus.x[k], locus.y[k], locus.point_names[k]});
     };
     const std::size_t last = locus.x.size() - 1;
     a.series.push_back(locus);
