@@ -471,9 +471,9 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   const std::string id = step_ + "_" + safe_name(probe.name);
   const std::size_t top = turning_row(rows);
   const bool both = top >= 2 && rows.size() - top >= 3;
-  // at the ends fewer turns are looked at, which do not leave other motions out
+  // at the ends fewer turns are looked at, which do not leave other shafts out
   const auto half = static_cast<std::size_t>(turns_) / 2;
-  const bool cut = rows.size() > 10 * half;
+  const bool cut = turns_ > out_.tracking.filter_turns() && rows.size() > 4 * half;
   const std::size_t first = cut ? half : 0, last = rows.size() - first;
   std::vector<plot::ResponseCurve> curves, envelope;
   for (std::size_t d = 0; d < probe.directions.size(); ++d)

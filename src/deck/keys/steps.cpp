@@ -471,19 +471,22 @@ void describe(Visitor& v, model::TransientStep& s) {
             {"unbalance_response", "in the steady response to the unbalance at the initial speed"},
             {"mode", "in static equilibrium plus a whirl mode at the initial speed"}},
            "state at the start, unless 'from' names a transient step");
-  const bool number = v.integer(
+  v.integer(
       "mode", s.mode, between(1, 10000),
       "of start = \"mode\": its number from the lowest frequency, among the modes of its kind");
-  const bool kind = v.choice(
-      "mode_kind", s.mode_kind,
-      {{"all", "every kind, in one row"},
-       {"lateral", "bending"},
-       {"torsional", "twist"},
-       {"axial", "along the shafts"}},
-      "of start = \"mode\": kind of the modes that are counted, by the largest share of their "
-      "energy");
-  const bool amplitude = v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive,
-                                    "of start = \"mode\": its largest displacement");
+  v.choice("mode_kind", s.mode_kind,
+           {{"all", "every kind, in one row"},
+            {"lateral", "bending"},
+            {"torsional", "twist"},
+            {"axial", "along the shafts"}},
+           "of start = \"mode\": kind of the modes that are counted, by the largest share of their "
+           "energy");
+  v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive,
+             "of start = \"mode\": its largest displacement");
+  // a resolved deck writes what is the default anyway
+  const model::TransientStep plain;
+  const bool number = s.mode != plain.mode, kind = s.mode_kind != plain.mode_kind,
+             amplitude = s.mode_amplitude != plain.mode_amplitude;
   if (s.start != model::TransientStep::Start::mode && (number || kind || amplitude))
     v.error("E26",
             number ? "mode"
