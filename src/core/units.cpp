@@ -123,7 +123,11 @@ class Parser {
       std::string fixed(s_);
       fixed[i_] = '.';
       const auto digit = [this](std::size_t k) { return peek(k) >= '0' && peek(k) <= '9'; };
-      if (digit(1) && digit(2) && digit(3) && !digit(4)) {
+      std::size_t first = i_;
+      while (first > 0 && s_[first - 1] >= '0' && s_[first - 1] <= '9')
+        --first;
+      const bool thousands = first < i_ && s_[first] != '0';
+      if (thousands && digit(1) && digit(2) && digit(3) && !digit(4)) {
         std::string joined(s_);
         joined.erase(i_, 1);
         fail("E12", fmt::format("\"{}\" has a comma inside a number", s_),

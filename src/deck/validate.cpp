@@ -113,12 +113,16 @@ void check_effects(const model::Model& m, Problems& out) {
         break;
       }
   }
-  const bool from_rest = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
-    const auto* law = std::get_if<model::TransientStep>(&s.law);
-    return law && s.from.empty() && law->previous.empty() &&
-           law->start == model::TransientStep::Start::rest;
-  });
-  if (transient && !from_rest && !m.initial.empty())
+  using Start = model::TransientStep::Start;
+  const auto begins = [&m](auto start) {
+    return std::any_of(m.steps.begin(), m.steps.end(), [&](const model::Step& s) {
+      const auto* law = std::get_if<model::TransientStep>(&s.law);
+      return law && s.from.empty() && law->previous.empty() && start(law->start);
+    });
+  };
+  const bool from_rest = begins([](Start s) { return s == Start::rest; }),
+             otherwise = begins([](Start s) { return s != Start::rest; });
+  if (otherwise && !from_rest && !m.initial.empty())
     report(out, "W02",
            fmt::format("the initial motion '{}' has no effect: no transient step starts from rest",
                        m.initial.front().name),

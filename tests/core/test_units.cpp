@@ -255,6 +255,8 @@ TEST(Units, Problems) {
       {"5 lb", "kg", "E09", "unknown unit 'lb' in \"5 lb\"",
        "say which: 'lbm' is the mass, 'lbf' the force"},
       {"5 furlong", "m", "E09", "unknown unit 'furlong' in \"5 furlong\"", ""},
+      {"3,000 rpm", "rpm", "E12", "\"3,000 rpm\" has a comma inside a number",
+       "write \"3000 rpm\" for thousands, \"3.000 rpm\" for a decimal point"},
       {"0,019 Pa.s", "Pa.s", "E12", "\"0,019 Pa.s\" has a comma inside a number",
        "write a decimal point (\"0.019 Pa.s\") and no thousands separator"},
       {"1 W/m.K", "W/(m.K)", "E10",
