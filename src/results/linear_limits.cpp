@@ -179,7 +179,19 @@ void GapCheck::look_at_tilts(double Omega, std::span<const VecXc> amplitudes, do
 void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency) {
   const std::vector<assembly::SupportForce>& supports = step_.job.built.support_forces;
   const system::System& sys = step_.job.system();
-  step_.linear.at(Omega);
+  bends_.resize(supports.size());
+  // how far a force leaves its linear part grows with the motion
+  bool further = false;
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const Index n = step_.job.mesh.bearings[i].shaft.node;
+    double way = 0;
+    for (const VecXc& a : amplitudes)
+      way += a.segment<6>(6 * n).norm();
+    further = further || way > 1.01 * bends_[i].way;
+    bends_[i].way = std::max(bends_[i].way, way);
+  }
+  if (!further) return;
+  step_.linear.move_to(Omega);
   const system::State& still = step_.linear.equilibrium().state;
   system::Workspace w = sys.make_workspace();
   w.context.averaged = step_.linear.running().running().mean;
@@ -193,28 +205,32 @@ void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, d
       out[i] = supports[i].force(node, w.context, reaction);
     return out;
   };
-  bends_.resize(supports.size());
-  constexpr int looks = 12;
+  constexpr int looks = 6;  // of half a period; the other half by the sign
   constexpr double small = 1e-3;
   const std::vector<Vec3> rest = forces_at(still.q);
   std::vector<Bend> now;
   for (const Vec3& force : rest)
-    now.push_back({0, 0, force.norm(), Omega, frequency});
+    now.push_back({.still = force.norm(), .speed = Omega, .frequency = frequency});
   for (int k = 0; k < looks; ++k) {
     VecX way = VecX::Zero(still.q.size());
     for (const VecXc& a : amplitudes)
-      way += (a * std::polar(1.0, two_pi * k / looks)).real();
-    const std::vector<Vec3> there = forces_at(still.q + way), on = forces_at(still.q + small * way),
+      way += (a * std::polar(1.0, pi * k / looks)).real();
+    const std::vector<Vec3> there = forces_at(still.q + way), other = forces_at(still.q - way),
+                            on = forces_at(still.q + small * way),
                             back = forces_at(still.q - small * way);
     for (std::size_t i = 0; i < supports.size(); ++i) {
       const Vec3 linear = (on[i] - back[i]) / (2 * small);
-      if (!linear.allFinite() || !there[i].allFinite()) continue;
+      if (!linear.allFinite() || !there[i].allFinite() || !other[i].allFinite()) continue;
       now[i].linear = std::max(now[i].linear, linear.norm());
-      now[i].off = std::max(now[i].off, (there[i] - rest[i] - linear).norm());
+      now[i].off = std::max(
+          {now[i].off, (there[i] - rest[i] - linear).norm(), (other[i] - rest[i] + linear).norm()});
     }
   }
   for (std::size_t i = 0; i < supports.size(); ++i)
-    if (now[i].share() > bends_[i].share()) bends_[i] = now[i];
+    if (now[i].share() > bends_[i].share()) {
+      now[i].way = bends_[i].way;
+      bends_[i] = now[i];
+    }
 }
 
 namespace {

@@ -48,6 +48,7 @@ class GapCheck {
   struct Bend {
     double off = 0, linear = 0;  ///< N, the largest over a period
     double still = 0;            ///< N, at rest
+    double way = 0;              ///< m and rad, the largest of its place so far
     double speed = 0, frequency = nan;
     double share() const { return linear > 0 ? off / linear : 0.0; }
   };
