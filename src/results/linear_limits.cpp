@@ -209,6 +209,7 @@ void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, d
   constexpr double small = 1e-3;
   const std::vector<Vec3> rest = forces_at(still.q);
   std::vector<Bend> now;
+  now.reserve(rest.size());
   for (const Vec3& force : rest)
     now.push_back({.still = force.norm(), .speed = Omega, .frequency = frequency});
   for (int k = 0; k < looks; ++k) {
