@@ -4,9 +4,10 @@
 // unbalance grows without bound at the highest frequencies of the mesh. So U has the place of its
 // section and turns with the nearest node whose inertia suffices: the force stays where it is, and
 // only how the shaft twists and bends between the two is left out of its direction. Where no node
-// suffices (a bare shaft in short elements) U is shared among as many neighbouring nodes as are needed
-// for each to carry its share, with the same sum and the same place of the resultant:
-// w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
+// suffices (a bare shaft in short elements) the place is the mean over a few, with weights v_i whose
+// centre is the section, and each part of it turns with nodes of its own:
+// T = U sum_i v_i u_i'.(sum_j w_ij b_j)'. With as much of the inertia J_j of the nodes about for each as
+// v_i^2/m_i is of the sum, all of them are positive while U^2 (sum v_i^2/m_i)/(sum J_j) < 1.
 #include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
 #include <elements/loads/unbalance.hpp>
@@ -34,51 +35,83 @@ double largest_factor(const model::Unbalance& u) {
   return most;
 }
 
-/// Shares of nodes first, first + 1, .. of a line.
-struct Shares {
+/// Weights of nodes first, first + 1, .. of a line.
+struct Mean {
   Index first = 0;
   std::vector<double> w;
-  double worst = infinity;  ///< largest |w_j| / carries_j, 1/(kg m)
 };
 
-/// The fewest neighbours of node k (positions x, increasing) that keep |U w_j| below `fine` of what
-/// each carries, or the best there are.
-Shares share(double U, double x0, Index k, const std::vector<double>& x,
-             const std::vector<NodeInertia>& nodes) {
-  const auto n = static_cast<Index>(x.size());
-  Shares best;
-  for (Index lo = k, hi = k;;) {
-    double s0 = 0, s1 = 0, s2 = 0;
-    const double scale =
-        std::max(x[static_cast<std::size_t>(hi)] - x[static_cast<std::size_t>(lo)], 1e-300);
-    for (Index j = lo; j <= hi; ++j) {
-      const auto i = static_cast<std::size_t>(j);
-      const double c = nodes[i].carries() * nodes[i].carries(), xi = (x[i] - x0) / scale;
-      s0 += c;
-      s1 += c * xi;
-      s2 += c * xi * xi;
-    }
-    const double det = s0 * s2 - s1 * s1;
-    if (hi > lo && det > 0) {
-      Shares now{lo, {}, 0};
-      for (Index j = lo; j <= hi; ++j) {
-        const auto i = static_cast<std::size_t>(j);
-        const double w =
-            nodes[i].carries() * nodes[i].carries() * (s2 - s1 * (x[i] - x0) / scale) / det;
-        now.w.push_back(w);
-        if (w != 0) now.worst = std::max(now.worst, std::abs(w) / nodes[i].carries());
-      }
-      if (now.worst < best.worst) best = now;
-      if (U * best.worst <= fine) return best;
-    }
-    const bool left = lo > 0, right = hi + 1 < n;
-    if (!left && !right) return best;
-    if (right && (!left || x[static_cast<std::size_t>(hi + 1)] - x0 <=
-                               x0 - x[static_cast<std::size_t>(lo - 1)]))
+/// A line as its nodes: places (increasing), inertias.
+struct Slices {
+  std::vector<double> x;
+  std::vector<NodeInertia> nodes;
+  Index size() const { return static_cast<Index>(x.size()); }
+  double mass(Index j) const { return nodes[static_cast<std::size_t>(j)].mass; }
+  double turning(Index j) const {
+    const NodeInertia& n = nodes[static_cast<std::size_t>(j)];
+    return std::min(n.Id, n.Ip);
+  }
+  double place(Index j) const { return x[static_cast<std::size_t>(j)]; }
+  /// One node more, that which is nearer to x0. False: there is none.
+  bool grow(Index& lo, Index& hi, double x0) const {
+    const bool left = lo > 0, right = hi + 1 < size();
+    if (!left && !right) return false;
+    if (right && (!left || place(hi + 1) - x0 <= x0 - place(lo - 1)))
       ++hi;
     else
       --lo;
+    return true;
   }
+};
+
+/// The mean place x0 of nodes lo .. hi: weights of least sum v_i^2/m_i; none where there is no such
+/// mean.
+Mean mean_place(const Slices& s, Index lo, Index hi, double x0) {
+  if (lo == hi && s.place(lo) == x0) return {lo, {1.0}};
+  double s0 = 0, s1 = 0, s2 = 0;
+  const double scale = std::max(s.place(hi) - s.place(lo), 1e-300);
+  for (Index j = lo; j <= hi; ++j) {
+    const double xi = (s.place(j) - x0) / scale;
+    s0 += s.mass(j);
+    s1 += s.mass(j) * xi;
+    s2 += s.mass(j) * xi * xi;
+  }
+  const double det = s0 * s2 - s1 * s1;
+  Mean out{lo, {}};
+  for (Index j = lo; j <= hi && det > 0; ++j)
+    out.w.push_back(s.mass(j) * (s2 - s1 * (s.place(j) - x0) / scale) / det);
+  return out;
+}
+
+/// Place and directions of a moment that no node bears by itself.
+struct Spread {
+  Mean place;
+  Index first = 0, last = -1;  ///< nodes whose directions it takes
+  double light = 0, J = 0;     ///< sum v^2/m, 1/kg; sum of their inertia, kg m2
+  double worst() const { return J > 0 ? std::sqrt(light / J) : infinity; }  ///< 1/(kg m)
+};
+
+/// The narrowest place that bears U to `fine` with the directions of as many nodes as that takes; the
+/// best there is.
+Spread spread(double U, double x0, Index k, const Slices& s) {
+  Spread best;
+  Index lo = k, hi = k;
+  do {
+    Spread now{mean_place(s, lo, hi, x0), k, k, 0, s.turning(k)};
+    if (now.place.w.empty()) continue;
+    for (std::size_t i = 0; i < now.place.w.size(); ++i)
+      if (const double v = now.place.w[i]; v != 0)
+        now.light += v * v / s.mass(lo + static_cast<Index>(i));
+    while (U * now.worst() > fine) {
+      Index a = now.first, b = now.last;
+      if (!s.grow(a, b, x0)) break;
+      now.J += s.turning(a < now.first ? a : b);
+      now.first = a;
+      now.last = b;
+    }
+    if (now.worst() < best.worst()) best = now;
+  } while (U * best.worst() > fine && s.grow(lo, hi, x0));
+  return best;
 }
 
 /// The nearest node with whose direction node k carries U to `fine`; -1: none.
@@ -148,6 +181,32 @@ void add_spread(Assembly& a, const model::Unbalance& u, const meshes::Line& line
   }
 }
 
+/// Each part of the place with its share of the directions, both from left to right.
+void add_spread_point(Assembly& a, const model::Unbalance& u, const meshes::Line& line,
+                      const Spread& s, const Slices& slices) {
+  Index j = s.first;
+  double left = slices.turning(j);  // of node j, not given away yet
+  for (std::size_t i = 0; i < s.place.w.size(); ++i) {
+    const double v = s.place.w[i];
+    if (v == 0) continue;
+    const Index place = s.place.first + static_cast<Index>(i);
+    const double share = s.J * v * v / (slices.mass(place) * s.light);
+    for (double taken = 0; taken < share * (1 - 1e-9);) {
+      const double part = j == s.last ? share - taken : std::min(left, share - taken);
+      const double amount = u.amount * v * part / share;
+      if (part > 0 && place == j)
+        a.builder.add(elements::UnbalanceMass(amount, u.phase, u.factor), {line.first_node + j},
+                      "unbalances");
+      else if (part > 0)
+        a.builder.add(elements::LightUnbalance(amount, u.phase, u.factor),
+                      {line.first_node + place, line.first_node + j}, "unbalances of light slices");
+      taken += part;
+      left -= part;
+      if (left <= 0 && j < s.last) left = slices.turning(++j);
+    }
+  }
+}
+
 }  // namespace
 
 void add_unbalances(Assembly& a) {
@@ -173,36 +232,32 @@ void add_unbalances(Assembly& a) {
                     "unbalances");
       continue;
     }
-    std::vector<double> x;
+    Slices slices{{}, nodes};
     for (Index i = 0; i < line.nodes; ++i)
-      x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
-    if (const Index guide = guide_of(U, k, x, nodes); guide >= 0) {
+      slices.x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
+    if (const Index guide = guide_of(U, k, slices.x, nodes); guide >= 0) {
       a.builder.add(elements::LightUnbalance(u.amount, u.phase, u.factor, at.offset),
                     {at.node, line.first_node + guide}, "unbalances of light slices");
       continue;
     }
-    const double x0 = x[static_cast<std::size_t>(k)] + at.offset;
-    Shares s = share(U, x0, k, x, nodes);
-    if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
-    if (U * s.worst > impossible) {
+    const Spread s = spread(U, slices.place(k) + at.offset, k, slices);
+    if (U * std::min(s.worst(), 1 / own) > impossible) {
       too_much(a, u, U, nodes);
       continue;
     }
-    if (s.w.size() == 1) {
+    if (!(s.worst() < 1 / own)) {
       a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node},
                     "unbalances");
       continue;
     }
-    for (std::size_t j = 0; j < s.w.size(); ++j)
-      if (s.w[j] != 0)
-        a.builder.add(elements::UnbalanceMass(s.w[j] * u.amount, u.phase, u.factor),
-                      {line.first_node + s.first + static_cast<Index>(j)}, "unbalances");
-    a.built.notes.push_back(
-        fmt::format("{} ({:.4g} kg m): spread over {:.3g} mm of the shaft, as the slice of one "
-                    "node is too light to carry it",
-                    u.name.empty() ? "unbalance" : u.name, u.amount,
-                    1e3 * (x[static_cast<std::size_t>(s.first) + s.w.size() - 1] -
-                           x[static_cast<std::size_t>(s.first)])));
+    add_spread_point(a, u, line, s, slices);
+    const double width = slices.place(s.place.first + static_cast<Index>(s.place.w.size()) - 1) -
+                         slices.place(s.place.first);
+    if (width > 0)
+      a.built.notes.push_back(
+          fmt::format("{} ({:.4g} kg m): its place is the mean over {:.3g} mm of the shaft, as the "
+                      "slice of one node is too light to carry it",
+                      u.name.empty() ? "unbalance" : u.name, u.amount, 1e3 * width));
   }
 }
 
