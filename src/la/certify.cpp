@@ -134,16 +134,11 @@ bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
 }
 
 bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
-  constexpr double near = 1e-2, round = 0.3;
-  constexpr Index crowd = 16;
-  const auto within = [&](Complex place, double distance) {
-    return std::count_if(known.begin(), known.end(), [&](const Pair& p) {
-      return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
-             std::abs(p.lambda - place) < distance * std::abs(p.lambda);
-    });
-  };
   const auto is_copy = [&](Complex place) {
-    return within(place, near) > 0 || within(place, round) >= crowd;
+    return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
+      return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
+             std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
+    });
   };
   return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
 }

@@ -77,8 +77,8 @@ struct ModeSolver::Impl : Eigenpairs {
   /// modes oscillate as are wanted.
   void extend_to_count();
   /// The missing roots are further copies of overdamped ones that are known: massless unknowns
-  /// under damping in proportion to their stiffness all have the one rate -1/beta, and fast motions
-  /// crowd about it. Their number says nothing about the machine.
+  /// under damping in proportion to their stiffness all have the one rate -1/beta. Their number
+  /// says nothing about the machine.
   bool further_copies(const std::vector<Complex>& places) const;
   /// Free motions whose zero roots the search could not tell apart (several at once are defective):
   /// they are counted by themselves, within a circle round zero that is small beside every other

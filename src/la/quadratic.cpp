@@ -261,9 +261,11 @@ std::vector<std::size_t> ModeSolver::Impl::choose_counted() const {
   }
   sort_by_frequency(oscillating);
   sort_by_frequency(real_ones);
-  Index asked = std::count_if(oscillating.begin(), oscillating.end(), [&](std::size_t i) {
-    return known[i].lambda.imag() <= opt.max_frequency;
-  });
+  // beyond what was counted some may be missing
+  const double top =
+      certificate.counted ? std::min(opt.max_frequency, certificate.radius) : opt.max_frequency;
+  Index asked = std::count_if(oscillating.begin(), oscillating.end(),
+                              [&](std::size_t i) { return known[i].lambda.imag() <= top; });
   if (opt.count > 0) asked = std::min(asked, opt.count);
   const auto last_growing = std::find_if(oscillating.rbegin(), oscillating.rend(),
                                          [&](std::size_t i) { return grows(known[i]); });

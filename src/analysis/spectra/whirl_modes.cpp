@@ -334,7 +334,9 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
   const double at_speed =
       std::max(whirl_of_speed * std::abs(Omega), linear_.running().running().control_bandwidth);
   const auto fastest = solver_.fastest_root();
-  const double wanted = quiet ? quiet->above : std::max(at_speed, 1.01 * fastest.value_or(0.0));
+  constexpr double beyond_all = 100.0;  // and nothing is counted between the fastest and there
+  const double wanted =
+      quiet ? quiet->above : std::max(at_speed, beyond_all * fastest.value_or(0.0));
   if (wanted > reached) {
     modes = &solver_.solve_to(m, wanted);
     known.list = solver_.certificate();
