@@ -86,12 +86,12 @@ void Linearizer::relax_axially() {
   std::unique_ptr<la::DirectSolver<double>> direct;
   constexpr int rounds = 20;  // shafts and linear supports need one
   for (int round = 0; round < rounds; ++round) {
-    const bool inside =
-        running_.residual(equilibrium_.state.frames, equilibrium_.Omega, q, r_) &&
-        running_.tangent(equilibrium_.state.frames, equilibrium_.Omega, q, matrices_);
-    if (!inside) return;
+    const system::Frames& frames = equilibrium_.state.frames;
+    if (!running_.residual(frames, equilibrium_.Omega, q, r_)) break;
     for (Index k = 0; k < r_.size(); ++k)
       if (!axial[at_(k)]) r_[k] = 0.0;
+    if (r_.isZero(0.0)) return;
+    if (!running_.tangent(frames, equilibrium_.Omega, q, matrices_)) break;
     double stiffest = 0;
     for (Index k = 0; k < r_.size(); ++k)
       if (axial[at_(k)])
@@ -111,6 +111,8 @@ void Linearizer::relax_axially() {
     q -= r_;
     if (r_.norm() <= 1e-12 * q.norm()) return;
   }
+  throw run_error("E76", "the axial forces of the undeformed shaft find no balance",
+                  "about = \"equilibrium\"");
 }
 
 bool Linearizer::still_balanced(double Omega) {

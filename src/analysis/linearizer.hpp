@@ -76,7 +76,7 @@ class Linearizer {
   bool still_balanced(double Omega);
   void take_undeformed(double Omega);
   /// Balances the axial forces of the undeformed state.
-  /// @throws Error E75 when nothing resists a motion along x that is loaded.
+  /// @throws Error E75 when nothing resists a motion along x that is loaded, E76 without a balance.
   void relax_axially();
   SteadySystem running_;
   EquilibriumOptions options_;

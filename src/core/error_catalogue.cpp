@@ -477,6 +477,7 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"W03", "outside the range of a theory",
        "The model is computed as asked, but the formulas behind it are known to be inaccurate for "
        "these dimensions, or in this state: a film pressed beyond an eccentricity of 0.99, a "
+       "shaft that would stand in the poles of a magnet, a "
        "bearing of the short theory that is longer than half its diameter or has more force beyond "
        "that of a finite one than at L/D = 0.5 and an eccentricity of 0.7. The message says what "
        "fits better.",

@@ -4,6 +4,7 @@
 #include <results/clearances.hpp>
 #include <results/linear_limits.hpp>
 #include <results/transient_output.hpp>
+#include <run/support_diagnosis.hpp>
 
 #include <fmt/format.h>
 
@@ -266,9 +267,7 @@ void LimitsOutput::judge_gap(TransientEnd& end, const Gap& x) {
         "at t = {:.6g} s): its film is believed up to {}",
         end.step.name, x.name, x.largest.value / x.size, x.largest.time, x.begin,
         assembly::SupportCondition::believed);
-    d.hint =
-        "the film is thinner than roughness and tilt allow: more speed or viscosity, less "
-        "clearance, a longer bearing, less load";
+    d.hint = run::pressed_film_hint;
   }
   warn(end.job, std::move(d));
 }

@@ -184,11 +184,14 @@ void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, d
   bool further = false;
   for (std::size_t i = 0; i < supports.size(); ++i) {
     const Index n = step_.job.mesh.bearings[i].shaft.node;
-    double way = 0;
-    for (const VecXc& a : amplitudes)
-      way += a.segment<6>(6 * n).norm();
-    further = further || way > 1.01 * bends_[i].way;
+    double way = 0, tilt = 0;
+    for (const VecXc& a : amplitudes) {
+      way += a.segment<3>(6 * n).norm();
+      tilt += a.segment<3>(6 * n + 3).norm();
+    }
+    further = further || way > 1.01 * bends_[i].way || tilt > 1.01 * bends_[i].tilt;
     bends_[i].way = std::max(bends_[i].way, way);
+    bends_[i].tilt = std::max(bends_[i].tilt, tilt);
   }
   if (!further) return;
   step_.linear.move_to(Omega);
@@ -227,11 +230,13 @@ void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, d
           {now[i].off, (there[i] - rest[i] - linear).norm(), (other[i] - rest[i] + linear).norm()});
     }
   }
-  for (std::size_t i = 0; i < supports.size(); ++i)
-    if (now[i].share() > bends_[i].share()) {
-      now[i].way = bends_[i].way;
-      bends_[i] = now[i];
-    }
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    most_linear_ = std::max(most_linear_, now[i].linear);
+    if (!(now[i].share() > bends_[i].share())) continue;
+    now[i].way = bends_[i].way;
+    now[i].tilt = bends_[i].tilt;
+    bends_[i] = now[i];
+  }
 }
 
 namespace {
@@ -262,9 +267,6 @@ void GapCheck::report_tilt() {
 
 void GapCheck::report_forces() {
   constexpr double straight = 0.3;
-  double largest = 0;
-  for (const Bend& x : bends_)
-    largest = std::max(largest, x.linear);
   for (std::size_t i = 0; i < bends_.size(); ++i) {
     const Bend& x = bends_[i];
     const assembly::SupportForce& support = step_.job.built.support_forces[i];
@@ -272,14 +274,13 @@ void GapCheck::report_forces() {
     const bool named = worst != worst_.end() &&
                        (worst->second.film || worst->second.displacement > worst->second.gap);
     // what hardly acts misleads nobody, nor does rounding of what stands still
-    if (named || x.share() <= straight || x.off <= 1e-3 * largest || x.off <= 1e-8 * x.still)
+    if (named || x.share() <= straight || x.off <= 1e-3 * most_linear_ || x.off <= 1e-8 * x.still)
       continue;
     Diagnostic d;
     d.code = "W11";
     d.message = fmt::format(
         "step '{}': {} the response takes '{}' so far that its force leaves its linear part by "
-        "{:.2g} "
-        "of it: a linear response does not know it",
+        "{:.2g} of it: a linear response does not know it",
         step_.step.name, place_of(x.speed, x.frequency), support.name, x.share());
     d.hint =
         "play that opens, a spring that stiffens or a magnet that saturates: a transient step "

@@ -48,7 +48,7 @@ class GapCheck {
   struct Bend {
     double off = 0, linear = 0;  ///< N, the largest over a period
     double still = 0;            ///< N, at rest
-    double way = 0;              ///< m and rad, the largest of its place so far
+    double way = 0, tilt = 0;    ///< m, rad: the largest of its place so far
     double speed = 0, frequency = nan;
     double share() const { return linear > 0 ? off / linear : 0.0; }
   };
@@ -59,6 +59,7 @@ class GapCheck {
   std::map<std::string, Worst> worst_;
   Tilt tilt_;
   std::vector<Bend> bends_;  ///< of the supports
+  double most_linear_ = 0;   ///< N, of all of them
 };
 
 /// Bearings whose table ends within low .. high (reference speed, rad/s) and whose edge coefficients

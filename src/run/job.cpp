@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <unistd.h>
@@ -55,21 +56,29 @@ void Job::build_for(const model::Step& step) {
   key_ = key;
 }
 
+bool Job::goes_on_in_motion(const model::Step& step) const {
+  return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) {
+    return s.name == step.from && std::holds_alternative<model::TransientStep>(s.law);
+  });
+}
+
 StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   if (!step.from.empty()) {
     StepState s = states.at(step.from);
-    if (!speed) return s;
-    s.speed = *speed;
+    const bool in_motion = goes_on_in_motion(step);
+    if (speed) s.speed = *speed;
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
       const meshes::Line& line = mesh.lines[l];
-      const double spin = model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
-      // an equilibrium has its lines at angle zero, a drive may begin elsewhere
       const assembly::LineSpin& law = built.spins[l];
-      const double turned = in_time && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
+      // an equilibrium has its lines at angle zero, a drive may begin elsewhere
+      const double turned =
+          in_time && !in_motion && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
       for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
-        s.state.v[6 * n + system::spin_phi] = spin;
         s.state.q[6 * n + system::spin_phi] += turned;
+        if (speed)
+          s.state.v[6 * n + system::spin_phi] =
+              model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
       }
     }
     return s;

@@ -70,6 +70,8 @@ struct Job {
   Index reference() const { return built.reference; }
   /// Builds the system with the drives of a step (the same one again costs nothing).
   void build_for(const model::Step& step);
+  /// The step goes on from the motion of another one, which has its own speed and angles.
+  bool goes_on_in_motion(const model::Step& step) const;
   /// Initial state of a step: that of the step it names, else straight, with the lines' spins.
   /// speed: of the reference, rad/s, every line at its speed_ratio whatever drives prescribe;
   /// without it lines turn as their drives prescribe at time 0, else with their initial spins.

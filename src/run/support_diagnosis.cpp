@@ -163,9 +163,7 @@ Diagnostic beyond(const SupportCondition& c, const SupportCondition::State& s,
         "to "
         "{}, where it carries about {:.4g} N",
         c.name, s.displacement / s.gap, at, s.load, SupportCondition::believed, s.capacity);
-    d.hint =
-        "the film is thinner than roughness and tilt allow: more speed or viscosity, less "
-        "clearance, a longer bearing, less load";
+    d.hint = pressed_film_hint;
   } else if (s.magnet) {
     d.code = "W03";
     d.message = fmt::format(

@@ -14,6 +14,11 @@ namespace whirl::run {
 Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
                              const StepState& start, const Error& failed);
 
+/// What helps a film that is pressed further than it is believed.
+inline constexpr const char* pressed_film_hint =
+    "the film is thinner than roughness and tilt allow: more speed or viscosity, less clearance, a "
+    "longer bearing, less load";
+
 /// Supports beyond what they are for in the state of a step, as warnings of the run (terminal, report
 /// and summary): contacts that are closed, films pressed further than they are believed, shafts in
 /// the poles of magnets. when: "the start", "the equilibrium

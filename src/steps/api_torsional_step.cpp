@@ -348,7 +348,7 @@ void TorsionalReport::find_modes_met() {
     for (const Component& c : components_of(t))
       highest = std::max(highest, c.excitation.at(law_.operating[1]));
   met_ = modes_;
-  if (!modes_.empty() && highest <= modes_.back().frequency) return;
+  if (highest <= (modes_.empty() ? 0.0 : modes_.back().frequency)) return;
   analysis::ModesOptions o;
   o.count = 0;
   o.max_frequency = 1.05 * highest;

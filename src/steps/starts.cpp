@@ -48,10 +48,6 @@ void take_equilibrium(const run::Job& job, const analysis::Equilibrium& e, run::
   start.state.a.setZero();
 }
 
-}  // namespace
-
-namespace {
-
 /// The response that is steady is one about the rotor as the mean of its turn: not of every rotor.
 /// @throws Error E26 where the motion is another.
 void check_steady(const run::Job& job, const run::StepState& start) {

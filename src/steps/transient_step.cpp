@@ -101,17 +101,10 @@ void settle_start(run::Job& job, run::StepState& start, const model::TransientSt
 
 }  // namespace
 
-/// The step goes on from the motion of another one, which has its own speed.
-static bool goes_on_in_motion(const run::Job& job, const model::Step& step) {
-  return std::any_of(job.model.steps.begin(), job.model.steps.end(), [&](const model::Step& s) {
-    return s.name == step.from && std::holds_alternative<model::TransientStep>(s.law);
-  });
-}
-
 run::StepState transient_start(run::Job& job, const model::Step& step,
                                const model::TransientStep& law) {
   const bool other_run = !law.previous.empty();
-  const auto speed = goes_on_in_motion(job, step) ? std::nullopt : law.own_speed();
+  const auto speed = job.goes_on_in_motion(step) ? std::nullopt : law.own_speed();
   run::StepState start = other_run ? start_of_other_run(job, law.previous, law.previous_step)
                                    : job.start_of(step, speed);
   begin_governors(job, start);
@@ -232,7 +225,7 @@ void TransientRun::warn_of_start() const {
   if (resumed_) return;
   const bool other_run = !law_.previous.empty();
   if (!step_.from.empty() || other_run) warn_of_jumps(job_, step_, start_);
-  if (law_.own_speed() && (goes_on_in_motion(job_, step_) || other_run))
+  if (law_.own_speed() && (job_.goes_on_in_motion(step_) || other_run))
     results::warn_of_step(
         job_, step_,
         "initial_speed has no effect: the step goes on from a motion with its own speed");

@@ -321,12 +321,13 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   io::Table margins;
   margins.title = "Separation margins (API RP 684)";
   margins.nan_means = "no half-power point within the speeds";
-  margins.columns = {{"probe", "-", ""},
-                     {"peak", "rpm", ""},
-                     {"amplification factor", "-", ""},
-                     {"required", "%", ""},
-                     {"actual", "%", "negative: inside the operating range"},
-                     {"result", "-", ""}};
+  margins.columns = {
+      {"probe", "-", ""},
+      {"peak", "rpm", ""},
+      {"amplification factor", "-", ""},
+      {"required", "%", "by the largest factor it may have, where that is not known"},
+      {"actual", "%", "negative: inside the operating range"},
+      {"result", "-", ""}};
   int failed = 0, undetermined = 0;
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     for (const analysis::MarginRow& m :

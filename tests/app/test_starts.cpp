@@ -86,6 +86,11 @@ TEST(Starts, ADriveThatBeginsAtAnAngleWindsNothingUp) {
                             transient("from = \"s\"\ninitial_speed = \"3000 rpm\"\n")));
   ASSERT_EQ(after.exit, 0) << after.log;
   EXPECT_LT(most_elastic(after), 1.0);
+  const DeckRun alike(rotor(turned +
+                            "[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n" +
+                            transient("from = \"s\"\n")));
+  ASSERT_EQ(alike.exit, 0) << alike.log;
+  EXPECT_LT(most_elastic(alike), 1.0);
 }
 
 // Beside a drive the spin of an initial motion was added to it: twice the speed.
