@@ -423,7 +423,9 @@ inline void compare_rates(Linearizer& linear, double Omega, const std::vector<Wh
     const double away = distance_to(m.lambda, roots_at(linear, Omega, m.lambda));
     sum.rate = std::max(sum.rate, away);
     ++sum.rates;
-    EXPECT_LT(away, 1e-6) << name << ": " << m.lambda << " is no root of its own matrices";
+    // slow motions of a stiff machine are known to what rounding of its stiffness leaves
+    const double near = std::max(1e-6, m.rounding / std::abs(m.lambda));
+    EXPECT_LT(away, near) << name << ": " << m.lambda << " is no root of its own matrices";
   }
   for (std::size_t k = 0; k + 1 < found.size(); ++k) {
     const double from = found[k] * 1.001, to = found[k + 1] * 0.999;

@@ -96,8 +96,10 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
       if (!next) return std::nullopt;
       const double change = std::abs(next->lambda - rate);
       const double size = std::abs(rate);
-      // Every round contracts, until rounding is what is left. Own frequencies are known to 1e-11.
-      const bool at_rounding = change <= 1e-8 * size && change >= 0.9 * last_change;
+      // Every round contracts, until rounding is what is left: of slow motions of a stiff machine a
+      // good part. Own frequencies are known to 1e-11.
+      const double rounding = std::max(1e-8 * size, rounding_of(*next));
+      const bool at_rounding = change <= rounding && change >= 0.9 * last_change;
       steady = change <= (by_frequency() ? 1e-10 : 1e-13) * size || at_rounding;
       last_change = change;
       if (steady && round == 0 && sides > 0)  // the new side changes nothing
