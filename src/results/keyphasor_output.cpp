@@ -114,7 +114,7 @@ class KeyphasorOutput final : public TransientOutput {
 
  private:
   struct Direction {
-    std::string name;
+    std::string name, shown;  ///< shown: in figures
     double c = 1, s = 0;
   };
   struct Tracked {
@@ -130,7 +130,8 @@ class KeyphasorOutput final : public TransientOutput {
     std::vector<double> y, z;
   };
   void add_probe(const model::Probe& probe, double sense);
-  void take(const analysis::Turn& turn, std::span<const Complex> y, std::span<const Complex> z);
+  void take(const analysis::Turn& turn, std::span<const Complex> y, std::span<const Complex> z,
+            std::span<const analysis::Turn> seen);
   void take_orbit(std::size_t probe, const analysis::Turn& turn);
   Orbit last_turns(std::size_t probe, double t, double speed, double size) const;
   std::size_t column(std::size_t probe, std::size_t direction, std::size_t what) const;
@@ -150,13 +151,13 @@ class KeyphasorOutput final : public TransientOutput {
   const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
   std::string step_, shaft_, content_;  ///< content_: whether a part of a checkpoint fits
   std::vector<Tracked> probes_;
-  std::vector<double> filtered_;  ///< orders asked for, and the first if it is not among them
-  std::size_t first_ = 0;         ///< of filtered_: order 1
-  int turns_ = 1;                 ///< of the filter
+  std::vector<double> filtered_;  ///< orders asked for, and 1 and 0 if they are not among them
+  std::size_t first_ = 0, zeroth_ = 0;  ///< of filtered_: orders 1 and 0
+  int turns_ = 1;                       ///< of the filter
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;
   PlotBuffer rows_;
-  std::vector<double> row_, direction_values_;
+  std::vector<double> row_;
   std::vector<std::vector<Orbit>> recent_;  ///< [probe] last turns
   std::vector<Orbit> largest_, passed_;
   double last_speed_ = nan;  ///< of the orbits
@@ -164,8 +165,13 @@ class KeyphasorOutput final : public TransientOutput {
   analysis::Revolutions revolutions_;
 };
 
-std::vector<double> orders_with_the_first(std::vector<double> orders) {
-  if (std::find(orders.begin(), orders.end(), 1.0) == orders.end()) orders.push_back(1.0);
+std::size_t place_of(const std::vector<double>& orders, double order) {
+  return static_cast<std::size_t>(std::find(orders.begin(), orders.end(), order) - orders.begin());
+}
+
+std::vector<double> with_the_first_and_the_mean(std::vector<double> orders) {
+  for (const double order : {1.0, 0.0})
+    if (place_of(orders, order) == orders.size()) orders.push_back(order);
   return orders;
 }
 
@@ -198,14 +204,15 @@ KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyph
     : out_(s.job.model.output),
       step_(s.step.name),
       shaft_(keyphasor.shaft),
-      filtered_(orders_with_the_first(out_.tracking.orders)),
-      first_(static_cast<std::size_t>(std::find(filtered_.begin(), filtered_.end(), 1.0) -
-                                      filtered_.begin())),
+      filtered_(with_the_first_and_the_mean(out_.tracking.orders)),
+      first_(place_of(filtered_, 1.0)),
+      zeroth_(place_of(filtered_, 0.0)),
       turns_(turns_of(s.job, keyphasor)),
       rows_(0),
-      filter_(keyphasor.probes.size(), filtered_, out_.tracking.samples, turns_,
-              [this](const analysis::Turn& t, std::span<const Complex> y,
-                     std::span<const Complex> z) { take(t, y, z); }),
+      filter_(
+          keyphasor.probes.size(), filtered_, out_.tracking.samples, turns_,
+          [this](const analysis::Turn& t, std::span<const Complex> y, std::span<const Complex> z,
+                 std::span<const analysis::Turn> seen) { take(t, y, z, seen); }),
       revolutions_(points_of(s.job, keyphasor), keyphasor.node, out_.tracking.samples,
                    [this](const analysis::Turn& t) {
                      for (std::size_t p = 0; p < probes_.size(); ++p)
@@ -240,9 +247,10 @@ void KeyphasorOutput::add_probe(const model::Probe& probe, double sense) {
   Tracked t;
   t.name = probe.name;
   t.sense = sense;
-  if (probe.angles.empty()) t.directions = {{"y", 1.0, 0.0}, {"z", 0.0, 1.0}};
+  if (probe.angles.empty()) t.directions = {{"y", "y", 1.0, 0.0}, {"z", "z", 0.0, 1.0}};
   for (double a : probe.angles)
-    t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
+    t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi),
+                            fmt::format("{:.0f}°", a * 180.0 / pi), std::cos(a), std::sin(a)});
   t.column = columns_;
   columns_ += t.directions.size() * per_direction_ + 2;
   content_ += " " + probe.name;
@@ -271,9 +279,13 @@ std::vector<io::Channel> KeyphasorOutput::channels() const {
                      180.0 / pi,
                      {}});
       }
-      c.push_back(
-          {name + " envelope", "m", "half the peak-to-peak value of the turn", {}, 1.0, {}});
-      c.push_back({name + " mean", "m", "mean of the turn", {}, 1.0, {}});
+      c.push_back({name + " envelope",
+                   "m",
+                   "half the peak-to-peak value of the turns of the filter",
+                   {},
+                   1.0,
+                   {}});
+      c.push_back({name + " mean", "m", "mean of the turns of the filter", {}, 1.0, {}});
     }
     c.push_back({p.name + " 1X forward",
                  "m",
@@ -292,24 +304,28 @@ void KeyphasorOutput::begin() {
 }
 
 void KeyphasorOutput::take(const analysis::Turn& turn, std::span<const Complex> y,
-                           std::span<const Complex> z) {
+                           std::span<const Complex> z, std::span<const analysis::Turn> seen) {
   const std::size_t all = filtered_.size();
   row_[0] = 0.5 * (turn.t0 + turn.t1);
   row_[1] = turn.speed();
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     double* out = row_.data() + probes_[p].column;
-    direction_values_.resize(turn.y[p].size());
     for (const Direction& d : probes_[p].directions) {
-      for (std::size_t j = 0; j < direction_values_.size(); ++j)
-        direction_values_[j] = d.c * turn.y[p][j] + d.s * turn.z[p][j];
       for (std::size_t k = 0; k < out_.tracking.orders.size(); ++k) {
         const Complex x = d.c * y[p * all + k] + d.s * z[p * all + k];
         *out++ = std::abs(x);
         *out++ = analysis::lag_of(turn, x);
       }
-      const analysis::Range r = analysis::range_of(direction_values_);
-      *out++ = 0.5 * (r.high - r.low);
-      *out++ = r.mean;
+      // a whirl slower than the spin takes several turns
+      double low = infinity, high = -infinity;
+      for (const analysis::Turn& s : seen)
+        for (std::size_t j = 0; j < s.y[p].size(); ++j) {
+          const double x = d.c * s.y[p][j] + d.s * s.z[p][j];
+          low = std::min(low, x);
+          high = std::max(high, x);
+        }
+      *out++ = 0.5 * (high - low);
+      *out++ = d.c * y[p * all + zeroth_].real() + d.s * z[p * all + zeroth_].real();
     }
     // against the angle of the shaft, so that it may turn either way
     const analysis::Orbit circles =
@@ -448,7 +464,7 @@ void KeyphasorOutput::add_synchronous(io::ReportSection& section, std::size_t p,
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
     for (const std::size_t what : {std::size_t{0}, per_direction_ - 2}) {
       plot::Series s;
-      s.label = probe.directions[d].name +
+      s.label = probe.directions[d].shown +
                 (what == 0 ? fmt::format(" {}X", out_.tracking.orders.front()) : " envelope");
       if (what != 0) {
         s.style.dash = plot::Dash::dashed;
@@ -471,23 +487,18 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   const std::string id = step_ + "_" + safe_name(probe.name);
   const std::size_t top = turning_row(rows);
   const bool both = top >= 2 && rows.size() - top >= 3;
-  // at the ends fewer turns are looked at, which do not leave other shafts out
-  const auto half = static_cast<std::size_t>(turns_) / 2;
-  const bool cut = turns_ > out_.tracking.filter_turns() && rows.size() > 4 * half;
-  const std::size_t first = cut ? half : 0, last = rows.size() - first;
   std::vector<plot::ResponseCurve> curves, envelope;
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
     for (const bool rising : {true, false}) {
       const std::size_t from = rising ? 0 : top, to = rising ? top + 1 : rows.size();
       if (to - from < 3) continue;
       plot::ResponseCurve c;
-      c.label = probe.directions[d].name + (both ? rising ? " rising" : " falling" : "");
+      c.label = probe.directions[d].shown + (both ? rising ? " rising" : " falling" : "");
       plot::ResponseCurve e = c;
       for (std::size_t r = from; r < to; ++r) {
         e.speed.push_back(rows[r][1]);
         e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]);
         e.phase_lag.push_back(nan);
-        if (r < first || r >= last) continue;
         const double amplitude = rows[r][column(p, d, 0)];
         // below a billionth of the largest motion the phase is that of rounding
         c.speed.push_back(rows[r][1]);
@@ -538,7 +549,7 @@ void KeyphasorOutput::add_orders(io::ReportSection& section, std::size_t p, doub
     bool counts = false;
     for (std::size_t d = 0; d < probes_[p].directions.size(); ++d) {
       plot::Series s;
-      s.label = fmt::format("{} {}X", probes_[p].directions[d].name, out_.tracking.orders[k]);
+      s.label = fmt::format("{} {}X", probes_[p].directions[d].shown, out_.tracking.orders[k]);
       s.style = {static_cast<int>(k), d == 0 ? plot::Dash::solid : plot::Dash::dashed, 1.2};
       for (const auto& r : rows) {
         s.x.push_back(by_speed ? to_rpm(r[1]) : r[0]);
@@ -606,8 +617,8 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) con
   if (!(gap > 0) || !(path > 0.01 * gap)) return;  // elsewhere it is the beat of single turns
   const plot::DisplayUnit unit = plot::length_unit(std::max(most, gap));
   plot::Axes a;
-  a.x = plot::Axis("y, mean of the turn", unit.name);
-  a.y = plot::Axis("z, mean of the turn", unit.name);
+  a.x = plot::Axis("y, mean of the turns", unit.name);
+  a.y = plot::Axis("z, mean of the turns", unit.name);
   a.equal_aspect = true;
   plot::Series s;
   s.trace_label = "centre of the shaft";
@@ -623,8 +634,9 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) con
   noted.erase(std::unique(noted.begin(), noted.end()), noted.end());
   for (const std::size_t r : noted)
     if (r == 0 || std::hypot(rows[r][y] - rows[0][y], rows[r][z] - rows[0][z]) > 0.1 * path)
-      a.notes.push_back({unit.factor * rows[r][y], unit.factor * rows[r][z],
-                         fmt::format("{:.4g} s, {:.4g} rpm", rows[r][0], to_rpm(rows[r][1]))});
+      a.notes.push_back(
+          {unit.factor * rows[r][y], unit.factor * rows[r][z],
+           fmt::format("{:.4g} s, {} rpm", rows[r][0], readable(to_rpm(rows[r][1]), 4))});
   a.series.push_back(std::move(s));
   plot::Figure f;
   f.width = 560;

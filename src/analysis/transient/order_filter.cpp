@@ -74,8 +74,8 @@ void OrderFilter::end() {
 
 void OrderFilter::give(std::size_t turn) {
   const bool full = count_ == kept_.size();
-  const std::size_t whole = std::min({turn, count_ - 1 - turn, side_});
-  const std::size_t nearest = std::clamp(turn, side_, std::max(side_, count_ - 1 - side_));
+  const std::size_t centre = full ? side_ : turn;
+  const std::size_t half = full ? side_ : std::min(turn, count_ - 1 - turn);
   for (std::size_t i = 0; i < y_.size(); ++i) {
     const std::size_t probe = i / orders_.size(), order = i % orders_.size();
     const bool is_whole = orders_[order] == std::round(orders_[order]);
@@ -83,11 +83,10 @@ void OrderFilter::give(std::size_t turn) {
       y_[i] = z_[i] = Complex(nan, nan);
       continue;
     }
-    const std::size_t centre = is_whole ? turn : nearest, half = is_whole ? whole : side_;
     y_[i] = amplitude(&Turn::y, probe, order, centre, half);
     z_[i] = amplitude(&Turn::z, probe, order, centre, half);
   }
-  sink_(kept_[turn], y_, z_);
+  sink_(kept_[turn], y_, z_, std::span(kept_).subspan(centre - half, 2 * half + 1));
 }
 
 Complex OrderFilter::amplitude(Direction direction, std::size_t probe, std::size_t order,

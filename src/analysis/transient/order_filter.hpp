@@ -15,15 +15,17 @@ namespace whirl::analysis {
 /// ... orders: with M = 4 halves of an order are told apart, and what beats over fewer than four
 /// turns is left out of amplitude and phase. phi counts from the keyphasor's mark, so that phases of
 /// orders that are no whole numbers do not jump from turn to turn. Where the shaft begins, ends or
-/// turns round, whole orders are found from the fewer whole turns that stand about the turn (one at
-/// the end: a rectangular window), others from the nearest full window; nan where none is.
-/// M = 1: each turn by itself, without a Hann window.
+/// turns round, the nearest full window stands for the turns that none stands about: a narrower one
+/// would let through what the others leave out, an oil whirl for instance. Of a run that is shorter
+/// than the window whole orders are found from the whole turns that stand about the turn (one at
+/// the end: a rectangular window), others are nan. M = 1: each turn by itself, without a Hann window.
 /// F. J. Harris 1978, doi 10.1109/PROC.1978.10837.
 class OrderFilter {
  public:
-  /// The turn, and the amplitudes about it: y[probe * orders + order], m, 0-peak.
-  using Sink =
-      std::function<void(const Turn&, std::span<const Complex> y, std::span<const Complex> z)>;
+  /// The turn, the amplitudes about it: y[probe * orders + order], m, 0-peak (order 0: the mean), and
+  /// the turns that its window saw.
+  using Sink = std::function<void(const Turn&, std::span<const Complex> y,
+                                  std::span<const Complex> z, std::span<const Turn> seen)>;
   /// turns: M. @pre turns > 0, orders not negative.
   OrderFilter(std::size_t probes, std::vector<double> orders, int samples, int turns, Sink sink);
   /// A turn that does not go on where the last one ended begins anew.
