@@ -68,7 +68,8 @@ struct CriticalMark {
 };
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
                      std::span<const double> orders, std::span<const CriticalMark> criticals);
-/// Log decrement against speed, with the threshold at zero.
+/// Log decrement against speed, with the threshold at zero; enlarged about it where heavily damped
+/// modes take the scale.
 Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines,
                       std::span<const double> thresholds = {});
 
@@ -80,8 +81,9 @@ struct ResponseCurve {
 Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves,
                  Amplitude convention, std::span<const CriticalMark> criticals = {},
                  bool log_amplitude = false);
+/// Speeds are written along the first curve, at the peaks marked among others.
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
-                  Amplitude convention);
+                  Amplitude convention, std::span<const CriticalMark> marks = {});
 
 /// Stacked spectra against speed (or time): amplitude[i] over frequency (rad/s) at speed[i]
 /// (rad/s).

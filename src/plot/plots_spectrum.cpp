@@ -86,7 +86,7 @@ void add_order_line(Axes& a, double order, const Waterfall& w) {
   s.x = {e.speed0 * order / 60, last * order / 60};
   s.y = {e.speed0, last};
   s.style = {1, Dash::dashed, 0.9};
-  s.trace_label = number_text(order, 3) + "×";
+  s.trace_label = number_text(order, 3) + "X";
   const bool at_edge = last < end;
   a.notes.push_back({last * order / 60, last, s.trace_label, false,
                      at_edge == (order > 0) ? -24.0 : 3.0, at_edge ? -4.0 : 0.0});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace whirl::plot {
@@ -80,11 +81,11 @@ void mark_overdamped(Axes& a, const CampbellLine& line) {
     const bool said = std::any_of(a.notes.begin(), a.notes.end(), [&](const auto& note) {
       return note.text == "overdamped" && note.x == x && std::abs(note.y - y) <= 0.02 * y;
     });
-    if (ends && !said) a.notes.push_back({x, y, "overdamped"});
+    if (ends && !said) a.notes.push_back({x, y, "overdamped", false});
   }
 }
 
-std::string order_name(double order) { return number_text(order, 3) + "×"; }
+std::string order_name(double order) { return number_text(order, 3) + "X"; }
 
 }  // namespace
 
@@ -141,6 +142,77 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
   return f;
 }
 
+namespace {
+
+/// The part of a line between two values; where it leaves them it is cut at the very value.
+Series part_between(const Series& line, double low, double high) {
+  Series out = line;
+  out.x.clear();
+  out.y.clear();
+  std::erase_if(out.extra, [&](const Extra& e) { return e.values.size() != line.y.size(); });
+  const std::vector<Extra> extra = out.extra;
+  for (Extra& e : out.extra)
+    e.values.clear();
+  const auto add = [&](std::size_t i, double share) {  // a share of the way to the point behind it
+    const std::size_t j = share > 0.0 ? i + 1 : i;
+    out.x.push_back(std::lerp(line.x[i], line.x[j], share));
+    out.y.push_back(std::lerp(line.y[i], line.y[j], share));
+    for (std::size_t k = 0; k < out.extra.size(); ++k)
+      out.extra[k].values.push_back(std::lerp(extra[k].values[i], extra[k].values[j], share));
+  };
+  const auto leave = [&] {
+    if (out.y.empty() || std::isnan(out.y.back())) return;
+    out.x.push_back(out.x.back());
+    out.y.push_back(nan);
+    for (Extra& e : out.extra)
+      e.values.push_back(nan);
+  };
+  const auto inside = [&](double y) { return y >= low && y <= high; };
+  for (std::size_t i = 0; i < line.y.size(); ++i) {
+    if (inside(line.y[i])) add(i, 0.0);
+    if (i + 1 == line.y.size()) break;
+    const double rise = line.y[i + 1] - line.y[i];
+    std::array<double, 2> cuts{(low - line.y[i]) / rise, (high - line.y[i]) / rise};
+    if (cuts[0] > cuts[1]) std::swap(cuts[0], cuts[1]);
+    for (const double cut : cuts)
+      if (cut > 0.0 && cut < 1.0) add(i, cut);
+    if (!inside(line.y[i + 1])) leave();
+  }
+  return out;
+}
+
+/// Decrements about zero, where stability is decided, in axes of their own: heavily damped modes
+/// take the scale of the others. Nothing where these can be read as they are.
+std::optional<Axes> enlarged_about_zero(const Axes& whole) {
+  constexpr double usually_asked_for = 0.1;  // API 617, RP 684
+  double least = 0, most = 0;
+  for (const Series& s : whole.series)
+    for (const double y : s.y) {
+      least = std::min(least, y);
+      most = std::max(most, y);
+    }
+  const double reach = std::max(2.0 * usually_asked_for, -1.5 * least);
+  if (!(most > 4.0 * reach)) return std::nullopt;
+  Axes a;
+  a.x = whole.x;
+  a.y = Axis("enlarged about zero", "-");
+  a.y.min = least < 0 ? -1.1 * std::max(-least, 0.1 * reach) : 0.0;
+  a.y.max = reach;
+  a.legend = false;
+  a.share_x = true;
+  for (const Series& s : whole.series)
+    if (Series part = part_between(s, a.y.min, a.y.max); !part.y.empty())
+      a.series.push_back(std::move(part));
+  for (Rule rule : whole.rules) {
+    rule.label.clear();
+    a.rules.push_back(std::move(rule));
+  }
+  if (a.series.empty()) return std::nullopt;
+  return a;
+}
+
+}  // namespace
+
 Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines,
                       std::span<const double> thresholds) {
   Figure f;
@@ -148,7 +220,7 @@ Figure plot_stability(std::string name, std::string title, std::span<const Campb
   f.title = std::move(title);
   Axes a;
   a.x = Axis("speed", "rpm");
-  a.y = Axis("logarithmic decrement (unstable below 0)", "-");
+  a.y = Axis("log decrement (unstable below 0)", "-");
   a.x.include_zero = a.y.include_zero = true;
   std::array<bool, 4> used{};
   for (const auto& l : lines) {
@@ -161,7 +233,12 @@ Figure plot_stability(std::string name, std::string title, std::span<const Campb
   for (const double s : thresholds)
     a.rules.push_back(
         {true, s * rpm, "onset " + readable(s * rpm, 5) + " rpm", {1, Dash::dashed, 1.2}});
+  std::optional<Axes> near = enlarged_about_zero(a);
   f.axes.push_back(std::move(a));
+  if (near) {
+    f.height = 560;
+    f.axes.push_back(std::move(*near));
+  }
   return f;
 }
 
@@ -250,27 +327,53 @@ std::vector<std::size_t> distinct_points(const ResponseCurve& c) {
   return keep;
 }
 
-/// Speeds are written where the vector has turned by 40 degrees or more, and at the peak.
-void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds) {
+/// Points next to the speeds of a list, rpm.
+std::vector<std::size_t> points_at(const std::vector<double>& speeds,
+                                   std::span<const CriticalMark> marks) {
+  std::vector<std::size_t> out;
+  for (const CriticalMark& m : marks) {
+    const auto nearer = [&](double a, double b) {
+      return std::abs(a - rpm * m.speed) < std::abs(b - rpm * m.speed);
+    };
+    out.push_back(static_cast<std::size_t>(std::min_element(speeds.begin(), speeds.end(), nearer) -
+                                           speeds.begin()));
+  }
+  return out;
+}
+
+/// Speeds are written where the vector has turned by 40 degrees or more, and at the peaks: those
+/// marked, or the largest value.
+void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds,
+                 std::span<const CriticalMark> marks) {
   if (s.y.empty()) return;
   constexpr std::size_t most = 12;  // more hide the curve
   const auto peak =
       static_cast<std::size_t>(std::max_element(s.y.begin(), s.y.end()) - s.y.begin());
+  std::vector<std::size_t> peaks = points_at(speeds, marks);
+  if (peaks.empty()) peaks.push_back(peak);
   const auto turned = [&](std::size_t i, double from) {
     return std::abs(std::remainder(s.x[i] - from, 360));
   };
   const auto note = [&](std::size_t i) {
     a.notes.push_back({s.x[i], s.y[i], readable(speeds[i], 4) + " rpm"});
   };
-  note(peak);
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    if (std::find(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(k), peaks[k]) !=
+        peaks.begin() + static_cast<std::ptrdiff_t>(k))
+      continue;
+    note(peaks[k]);
+    if (k < marks.size()) a.notes.back().text = readable(marks[k].speed * rpm, 4) + " rpm";
+  }
   double last = nan;
   for (std::size_t i = 0; i < s.x.size() && a.notes.size() < most; ++i) {
-    if (i == peak) {
+    if (std::find(peaks.begin(), peaks.end(), i) != peaks.end()) {
       last = s.x[i];
       continue;
     }
     if (!(s.y[i] >= 0.2 * s.y[peak]) || (!std::isnan(last) && turned(i, last) < 40)) continue;
-    if (i < peak && turned(i, s.x[peak]) < 25) continue;
+    const bool crowded = std::any_of(
+        peaks.begin(), peaks.end(), [&](std::size_t p) { return i < p && turned(i, s.x[p]) < 25; });
+    if (crowded) continue;
     note(i);
     last = s.x[i];
   }
@@ -279,7 +382,7 @@ void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds) {
 }  // namespace
 
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
-                  Amplitude convention) {
+                  Amplitude convention, std::span<const CriticalMark> marks) {
   Figure f;
   f.name = std::move(name);
   f.title = std::move(title);
@@ -301,7 +404,7 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
       s.y.push_back(c.amplitude[i] * factor * u.factor);
       speed.values.push_back(c.speed[i] * rpm);
     }
-    if (&c == &curves.front()) note_speeds(a, s, speed.values);
+    if (&c == &curves.front()) note_speeds(a, s, speed.values, marks);
     s.extra.push_back(std::move(speed));
     a.series.push_back(std::move(s));
   }
@@ -335,10 +438,12 @@ Figure plot_critical_map(std::string name, std::string title, std::span<const Cu
     a.x.min = lo;
     a.x.max = hi;
   }
+  int color = static_cast<int>(modes.size());  // those behind the modes'
   for (const auto& b : supports) {
     Series s;
     s.label = b.label;
-    s.style = {ink, Dash::dashed, 1.3};
+    s.style = {color, color % 2 == 0 ? Dash::dashed : Dash::dash_dot, 1.3};
+    ++color;
     s.x = b.x;
     for (const double v : b.y)
       s.y.push_back(v * rpm);

@@ -329,7 +329,8 @@ void GapCheck::report(const std::string& of) {
     warn(step_.job, std::move(d));
   }
   if (used.empty() || !step_.job.model.output.report) return;
-  add_clearances(step_.job, step_.section, step_.file("clearance_diagram"), of, reach_, used);
+  add_clearances(step_.job, step_.section, step_.file("clearance_diagram"),
+                 step_.step.name + ", " + of, reach_, used);
 }
 
 double table_slack(const model::TableBearing& table) {

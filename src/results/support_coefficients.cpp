@@ -276,8 +276,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
   c.load = F.norm();
   if (c.load > 0 && c.place.norm() > 0) {
     c.attitude = (std::atan2(c.place.y(), c.place.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
-    c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
-    if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
+    c.attitude = std::remainder(c.attitude, 360.0);
   }
   if (const auto* law = std::get_if<model::FiniteJournal>(&job.model.bearings[bearing].law)) {
     elements::LateralMotion m;

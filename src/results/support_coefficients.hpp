@@ -61,7 +61,7 @@ struct SupportCoefficients {
   double load = 0;                          ///< on the bearing, lateral, N
   Vec2 place = Vec2::Zero();                ///< shaft against housing, m
   double clearance = nan;                   ///< m; NaN where there is none
-  double attitude = nan;                    ///< deg, 0 to 360; NaN without load or displacement
+  double attitude = nan;                    ///< deg, -180 to 180; NaN without load or displacement
   double sommerfeld = nan;                  ///< films: eta N L D (R/c)^2/W, N in rev/s
   Mat2 K = Mat2::Zero(), C = Mat2::Zero();  ///< N/m, N s/m
   std::optional<Matrix<5>>

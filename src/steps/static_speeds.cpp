@@ -121,6 +121,23 @@ plot::Figure draw_ring_speeds(const std::string& name, const std::vector<Sweep>&
   return f;
 }
 
+/// Ten degrees at the least: below that its numbers would be those of rounding.
+plot::Axis attitude_axis(const Sweep& b) {
+  plot::Axis axis("attitude", "deg");
+  double low = infinity, high = -infinity;
+  for (const double y :
+       b.series("", [](const results::SupportCoefficients& c) { return c.attitude; }).y)
+    if (std::isfinite(y)) {
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  if (high - low < 10.0) {
+    axis.min = std::floor(0.5 * (low + high)) - 5.0;
+    axis.max = axis.min + 11.0;
+  }
+  return axis;
+}
+
 plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>& all) {
   plot::Figure f = grid(name, "Eccentricity and attitude against speed", all.size(), 330);
   f.caption =
@@ -132,7 +149,7 @@ plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>
     a.x = plot::Axis("speed", "rpm");
     a.y = b.film() ? plot::Axis("eccentricity / clearance", "-") : plot::Axis("eccentricity", "um");
     a.y.include_zero = true;
-    a.right = plot::Axis("attitude", "deg");
+    a.right = attitude_axis(b);
     a.series.push_back(b.series("eccentricity", [&](const results::SupportCoefficients& c) {
       return c.place.norm() * (b.film() ? 1 / c.clearance : 1e6);
     }));

@@ -734,7 +734,7 @@ void expect_modes(const DeckRun& run, const std::string& figure, const std::stri
     expect_line(whole, line_of(a, rpm, y, {0, rpm.size()}), figure + " " + mode);
   }
   for (const DrawnCurve& c : a.curves)
-    shown += c.name == "1× excitation";
+    shown += c.name == "1X excitation";
   EXPECT_EQ(shown, a.curves.size()) << figure;
 }
 
@@ -757,7 +757,7 @@ TEST(DrawnNumbers, OfAnalysesAreThoseOfTheirTables) {
   std::erase_if(figures, [](const std::string& f) { return f.find("_shape_") != f.npos; });
   EXPECT_EQ(figures, known);  // none is missing, none is new
   const std::string frequency = "damped natural frequency [Hz]",
-                    decrement = "logarithmic decrement (unstable below 0)";
+                    decrement = "log decrement (unstable below 0)";
   expect_modes(run, "campbell_campbell", "campbell_campbell.csv", "frequency [Hz]", frequency);
   expect_modes(run, "campbell_log_decrement", "campbell_campbell.csv", "log decrement [-]",
                decrement);
