@@ -53,7 +53,7 @@ void add_probe_figures(results::FrequencyStep& s, const UnbalanceResponse& r,
                                  probes[p].name + ": response to unbalance", curves, convention,
                                  marks));
     s.add_figure(plot::plot_polar(s.file(probes[p].name + "_polar"),
-                                  probes[p].name + ": polar plot", curves, convention));
+                                  probes[p].name + ": polar plot", curves, convention, marks));
   }
 }
 
@@ -438,6 +438,15 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   o.probes = results::response_probes(job);
   o.outputs = results::support_measurements(job);
   o.threads = job.options.jobs;
+  // zones are judged over the operating speeds, both ends included
+  if (law.zones) {
+    const double sense = std::abs(o.speeds.front()) > std::abs(o.speeds.back()) ? -1.0 : 1.0;
+    for (const double end : law.operating) {
+      const auto is_there = [&](double x) { return std::abs(x - sense * end) <= 1e-12 * end; };
+      if (std::none_of(o.speeds.begin(), o.speeds.end(), is_there)) o.speeds.push_back(sense * end);
+    }
+    std::sort(o.speeds.begin(), o.speeds.end());
+  }
   return o;
 }
 

@@ -162,6 +162,20 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
   color_zones(s, r, probes, law);
 }
 
+namespace {
+
+/// Sum of the amounts of unbalances, as they are at time 0, and of disks off their axis, kg m.
+double unbalance_of(const model::Model& m, std::size_t shaft) {
+  double sum = 0;
+  for (const model::Unbalance& u : m.unbalances)
+    if (u.at.shaft == shaft) sum += std::abs(u.amount * (u.factor ? u.factor->at(0.0).f : 1.0));
+  for (const model::Disk& d : m.disks)
+    if (d.at.shaft == shaft) sum += d.mass * d.offset.tail<2>().norm();
+  return sum;
+}
+
+}  // namespace
+
 void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
   if (!(law.balance_grade > 0)) return;
   const model::Model& m = s.job.model;
@@ -169,7 +183,7 @@ void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
   t.title = "Balance grade after ISO 21940-11";
   t.columns = {{"shaft", "-", ""},
                {"mass", "kg", ""},
-               {"unbalance", "g mm", "sum of the amounts"},
+               {"unbalance", "g mm", "sum of the amounts, disks off the axis included"},
                {"permissible", "g mm", "of the grade, at the highest operating speed"},
                {"grade", "mm/s", "of the unbalances"},
                {"result", "-", ""}};
@@ -177,9 +191,7 @@ void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
     const double speed = std::abs(m.shafts[k].speed_ratio) * law.operating[1];
     if (!m.shafts[k].rotating || speed == 0) continue;
     const double mass = meshes::shaft_mass(m, k).mass;
-    double sum = 0;
-    for (const model::Unbalance& u : m.unbalances)
-      if (u.at.shaft == k) sum += std::abs(u.amount);
+    const double sum = unbalance_of(m, k);
     const double grade = mass > 0 ? sum * speed / mass : 0.0;
     io::Table::Cell result = grade <= law.balance_grade * (1 + 1e-12) ? "passed" : "FAILED";
     result.mark =

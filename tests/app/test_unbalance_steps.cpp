@@ -211,6 +211,47 @@ speed = )") + range + "\n" + no_report);
   EXPECT_NEAR(whole.csv("u_peaks.csv").last().at("amplification factor [-]"), 15.8, 0.2);
 }
 
+// 22 kg: 0.5 mm off the axis are 11,000 g mm, and three times 200 g mm are 600. Zones are judged at
+// both ends of the operating speeds, which are none of the speeds given.
+TEST(UnbalanceStep, GradesCountOffsetsAndFactors) {
+  const auto run = [](const std::string& disk, const std::string& rest) {
+    std::string deck = whirl::test::lateral_mass(22, "0 m/s^2", R"([[bearing]]
+name = "spring"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "600 N.s/m"
+czz = "600 N.s/m"
+[[probe]]
+name = "P"
+at = "mass"
+)" + rest + R"([[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["1000 rpm"] }
+operating_speed = ["500 rpm", "1500 rpm"]
+balance_grade = "G2.5"
+zones = {}
+)" + no_report);
+    const std::string inertia = "Id = \"0.06 kg.m^2\"\n";
+    return DeckRun(deck.insert(deck.find(inertia), disk));
+  };
+  const DeckRun off(run("offset = [\"0 mm\", \"0.3 mm\", \"0.4 mm\"]\n", ""));
+  ASSERT_EQ(off.exit, 0) << off.log;
+  const auto grade = off.csv("u_balance_grade.csv").last();
+  EXPECT_NEAR(grade.at("unbalance [g mm]"), 11000, 1e-6);
+  EXPECT_NEAR(grade.at("grade [mm/s]"), 0.5 * 50 * std::numbers::pi, 1e-6);
+  const DeckRun grown(run("", "[[unbalance]]\nat = \"mass\"\namount = \"200 g.mm\"\nfactor = 3\n"));
+  ASSERT_EQ(grown.exit, 0) << grown.log;
+  EXPECT_NEAR(grown.csv("u_balance_grade.csv").last().at("unbalance [g mm]"), 600, 1e-9);
+  const Columns response = grown.csv("u_response.csv");
+  ASSERT_EQ(response.rows.size(), 3u);
+  EXPECT_NEAR(response.rows[0][0], 500, 1e-9);
+  EXPECT_NEAR(response.rows[2][0], 1500, 1e-9);
+  EXPECT_EQ(grown.csv("u_zones.csv").rows.size(), 1u);
+}
+
 // A/B after ISO 7919-3 = 4800/sqrt(rpm) um: 62 at the 6,000 rpm of shaft a, 50.6 at the 9,000 of b.
 TEST(UnbalanceStep, ZonesAreThoseOfTheProbesOwnShaft) {
   const DeckRun run(pair(
