@@ -15,15 +15,19 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <stdexcept>
 
 namespace whirl::results {
 
 analysis::SteadyRotation steady_rotation_of(const model::Model& model, const meshes::Mesh& mesh,
                                             const assembly::Built& built, double top_speed) {
+  const auto lines = static_cast<std::size_t>(built.system.lines());
+  if (lines < mesh.lines.size())
+    throw std::logic_error("the rotation of a system before it is built");
   analysis::SteadyRotation r;
   for (std::size_t l = 0; l < mesh.lines.size(); ++l)
     r.ratio.push_back(mesh.lines[l].rotating ? model.shafts[l].speed_ratio : 0.0);
-  r.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
+  r.ratio.resize(lines, 0.0);
   r.top_speed = top_speed;
   r.table_frequencies = built.table_frequencies;
   r.axially_free = built.axially_free;
@@ -179,10 +183,9 @@ std::string direction_text(const analysis::WhirlMode& m) {
 
 FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::string& type,
                              const std::string& title, double top_speed, int load_steps)
-    : job(j),
+    : job((j.build_for(s), j)),  // first: what follows reads what is built
       step(s),
-      linear((j.build_for(s), j.system()), steady_rotation_of(j, top_speed),
-             equilibrium_options(j, load_steps)),
+      linear(j.system(), steady_rotation_of(j, top_speed), equilibrium_options(j, load_steps)),
       top_speed_(top_speed),
       load_steps_(load_steps) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);

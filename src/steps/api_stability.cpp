@@ -108,8 +108,10 @@ void Level1::add_couplings() {
 
 WhirlingMode Level1::at(double q) {
   model::Model m = model_;
+  // k > 0 drives the whirl from y to z, forward whirl of a shaft that turns so
+  const double sense = m.shafts[machine_.shaft].speed_ratio < 0 ? -1.0 : 1.0;
   for (const auto& [i, share] : shares_)
-    std::get<model::CrossCoupling>(m.bearings[i].law).k = share * q;
+    std::get<model::CrossCoupling>(m.bearings[i].law).k = sense * share * q;
   const assembly::Built built = assembly::build_system(m, sub_->mesh, step_.name);
   analysis::Linearizer linear = s_->linearizer_of(built.system);
   analysis::ModesOptions o;
@@ -183,6 +185,13 @@ void Level1::add_curve_figure(const Curve& curve) {
   line.label = "least stable forward mode";
   line.x = curve.q;
   line.y = curve.log_decrement;
+  // far beyond the onset the table tells
+  const double shown = 2.5 * std::max(anticipated_, curve.onset);
+  const auto beyond = std::upper_bound(line.x.begin(), line.x.end(), shown);
+  if (!std::isnan(curve.onset) && beyond != line.x.end()) {
+    line.x.erase(beyond, line.x.end());
+    line.y.resize(line.x.size());
+  }
   a.series.push_back(std::move(line));
   a.legend = false;
   a.rules.push_back({true, anticipated_, "QA", {plot::ink, plot::Dash::dash_dot, 0.8}});

@@ -111,16 +111,27 @@ model::Model with_planes(const model::Model& given, const model::BalancingStep& 
   return m;
 }
 
+/// Speed of the shaft of a plane over the reference's, with its sign.
+double ratio_of(const model::Model& m, const model::BalancePlane& plane) {
+  return m.shafts[plane.at.shaft].speed_ratio;
+}
+
 class Balancing {
  public:
   Balancing(run::Job& job, const model::Step& step, const model::BalancingStep& law)
       : job_(job),
         step_(step),
-        law_(law) {}
+        law_(law),
+        order_(std::abs(ratio_of(job.model, law.planes.front()))) {}
   void execute();
 
  private:
   VecXc respond(const model::Model& m) const;
+  /// A mass in a plane as an amplitude of its frequency, and back: a shaft that turns backwards meets
+  /// the marks in the opposite order.
+  Complex seen(std::size_t plane, Complex mass) const {
+    return ratio_of(job_.model, law_.planes[plane]) < 0 ? std::conj(mass) : mass;
+  }
   VecXc measured(const std::string& run) const {
     return vectors_of(job_.model, step_, law_, sensors_, run);
   }
@@ -132,10 +143,11 @@ class Balancing {
   run::Job& job_;
   const model::Step& step_;
   const model::BalancingStep& law_;
+  double order_;  ///< of the planes' shafts: what is balanced is of its frequency
   std::vector<Sensor> sensors_;
   MatXc influence_;       ///< m/(kg m): a row a sensor, a column a plane
   VecXc before_, after_;  ///< m
-  VecXc corrections_;     ///< kg m
+  VecXc corrections_;     ///< kg m, as amplitudes of the frequency
 };
 
 /// Response of a model at the sensors.
@@ -153,12 +165,17 @@ VecXc Balancing::respond(const model::Model& m) const {
   o.speeds = law_.speeds;
   o.probes = results::response_probes(sub);
   analysis::UnbalanceSolver solver(s.linear, o);
-  VecXc r(static_cast<Index>(sensors_.size()));
+  VecXc r = VecXc::Zero(static_cast<Index>(sensors_.size()));
+  const std::span<const double> orders = s.linear.running().orders();
+  const auto own =
+      std::find_if(orders.begin(), orders.end(), [&](double x) { return same(x, order_); });
+  if (own == orders.end()) return r;  // nothing is out of balance there
+  const auto order = static_cast<std::size_t>(own - orders.begin());
   for (const double speed : law_.speeds) {
     const analysis::SteadyPoint x = solver.at(speed, false);
     for (std::size_t i = 0; i < sensors_.size(); ++i)
       if (sensors_[i].speed == speed)
-        r[static_cast<Index>(i)] = x.probe.front()[sensors_[i].probe].along(sensors_[i].angle);
+        r[static_cast<Index>(i)] = x.probe[order][sensors_[i].probe].along(sensors_[i].angle);
   }
   return r;
 }
@@ -166,9 +183,11 @@ VecXc Balancing::respond(const model::Model& m) const {
 void Balancing::find_influence() {
   const auto planes = static_cast<Index>(law_.planes.size());
   influence_ = MatXc::Constant(static_cast<Index>(sensors_.size()), planes, Complex(nan, nan));
-  for (const model::TrialRun& t : law_.trials)
-    influence_.col(plane_of(step_, law_, t)) =
-        (measured(t.run) - before_) / std::polar(t.amount, t.phase);
+  for (const model::TrialRun& t : law_.trials) {
+    const Index plane = plane_of(step_, law_, t);
+    influence_.col(plane) = (measured(t.run) - before_) /
+                            seen(static_cast<std::size_t>(plane), std::polar(t.amount, t.phase));
+  }
   if (!law_.trials.empty()) return;
   constexpr double gram_millimetre = 1e-6;
   for (Index k = 0; k < planes; ++k) {
@@ -206,7 +225,7 @@ MatX Balancing::shapes_at_planes(results::FrequencyStep& s) const {
   const double top = *std::max_element(law_.speeds.begin(), law_.speeds.end());
   std::vector<analysis::Critical> found;
   for (const double beyond : {1.5, 3.0, 10.0}) {
-    found = undamped_forward(s.linear, beyond * top);
+    found = undamped_forward(s.linear, beyond * top / order_, order_);
     if (static_cast<double>(found.size()) >= highest) break;
   }
   MatX phi(static_cast<Index>(law_.modes.size()), static_cast<Index>(law_.planes.size()));
@@ -240,7 +259,7 @@ void Balancing::write(results::FrequencyStep& s) const {
     return d < 0 ? d + 360 : d;
   };
   for (std::size_t j = 0; j < law_.planes.size(); ++j) {
-    const Complex w = corrections_[static_cast<Index>(j)];
+    const Complex w = seen(j, corrections_[static_cast<Index>(j)]);
     corrections.add(
         {law_.planes[j].name, law_.planes[j].at.s, 1e6 * std::abs(w), degrees(std::arg(w))});
     io::Value& v = s.summary()["corrections"][law_.planes[j].name];
@@ -309,6 +328,20 @@ void check_balancing(const model::Model& m, const model::Step& step,
                      const model::BalancingStep& law) {
   if (!step.from.empty())
     throw balancing_error(step, "balancing starts from no other step", "leave out 'from'");
+  for (const model::BalancePlane& p : law.planes) {
+    const double ratio = std::abs(ratio_of(m, p)),
+                 first = std::abs(ratio_of(m, law.planes.front()));
+    if (!m.shafts[p.at.shaft].rotating || ratio == 0)
+      throw balancing_error(step,
+                            fmt::format("plane '{}' is on a shaft that does not turn", p.name),
+                            "planes are places of the rotor");
+    if (!same(ratio, first))
+      throw balancing_error(
+          step,
+          fmt::format("planes '{}' and '{}' turn at different speeds", law.planes.front().name,
+                      p.name),
+          "a step for each shaft: vibrations of different frequencies are balanced apart");
+  }
   const std::vector<Sensor> sensors = sensors_of(m, step, law);
   if (!law.measured.empty()) vectors_of(m, step, law, sensors, law.initial);
   for (const model::TrialRun& t : law.trials) {

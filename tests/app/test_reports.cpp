@@ -195,6 +195,20 @@ TEST(Reports, SpeedsOfAGearedRotorAreItsOwn) {
               1e-6);
 }
 
+// The mirror image of a machine: gas that drives the whirl goes round with the rotor.
+TEST(Reports, ARotorThatTurnsBackwardsIsJudgedTheSame) {
+  std::string deck = lateral_report(std::string(clearances) + stages);
+  const std::string shaft = "[shaft]\n";
+  deck.replace(deck.find(shaft), shaft.size(), shaft + "speed_ratio = -1\n");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const std::vector<Row> rows = compliance(d, "l");
+  ASSERT_EQ(rows.size(), 5u);
+  expect(rows[1], "vibration at probes", 2e6 * response(4000), 25.4, "passed");
+  expect(rows[3], "level 1: log decrement", log_decrement(anticipated), 0.1, "passed");
+  expect(rows[4], "level 1: Q0/QA", c * std::sqrt(k / m) / anticipated, 2, "passed");
+}
+
 TEST(Reports, LimitsAreSettings) {
   const DeckRun d(lateral_report(std::string("trip_speed = \"5500 rpm\"\n") + clearances + stages +
                                  R"([step.limits]
@@ -399,6 +413,36 @@ balance_grade = "G1"
   EXPECT_NEAR(zone.at("C/D [um]"), 13200 / std::sqrt(4000.0), 1e-6);
   EXPECT_NEAR(zone.at("amplitude [um]"), 2e6 * 30e-6 / unbalance() * response(4000), 1e-6);
   EXPECT_EQ(d.summary("u").at("zones").at("P").text(), "A");
+}
+
+// Speeds are the reference's; a shaft at twice of them, or against them, is balanced at its own.
+TEST(Reports, BalancingOfAShaftAtASpeedOfItsOwn) {
+  for (const double ratio : {2.0, -1.0, -2.0}) {
+    std::string deck = lateral_report("", R"([[unbalance]]
+at = "mass"
+amount = "30 g.mm"
+phase = "40 deg"
+[[step]]
+name = "b"
+type = "balancing"
+speeds = ["1750 rpm"]
+plane = [{ name = "disc", at = "mass" }]
+)");
+    const std::string shaft = "[shaft]\n";
+    deck.replace(deck.find(shaft), shaft.size(),
+                 shaft + "speed_ratio = " + std::to_string(ratio) + "\n");
+    const std::size_t report = deck.find("[[step]]\nname = \"l\"");
+    deck.erase(report, deck.find("[[unbalance]]") - report);
+    const DeckRun d(deck);
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const auto w = d.csv("b_corrections.csv").last();
+    EXPECT_NEAR(w.at("correction [g mm]"), 30, 1e-7) << ratio;
+    EXPECT_NEAR(w.at("angle [deg]"), 220, 1e-6) << ratio;
+    const double omega = rad(1750 * std::abs(ratio));
+    const double amplitude =
+        30e-6 * omega * omega / std::abs(Complex(k - m * omega * omega, c * omega));
+    EXPECT_NEAR(d.csv("b_residuals.csv").last().at("before [um]"), 1e6 * amplitude, 1e-6) << ratio;
+  }
 }
 
 // 10 um lagging 30 deg; 5 g mm at 0 deg add 10 um lagging 45 deg: 5 g mm at 195 deg take it away.
