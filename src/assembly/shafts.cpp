@@ -244,7 +244,7 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   const double about_z = rho * (g.Iy + g.Iz) - about_y;
   const auto constants = [&](double I, double kappa) {
     plane.given = {material.E * g.A,
-                   kappa > 0 ? kappa * material.G * g.A : 0.0,
+                   s.shear == model::ShearFactor::none ? 0.0 : kappa * material.G * g.A,
                    material.G * g.J,
                    material.E * I,
                    material.rho * g.A + s.added_mass_per_length,

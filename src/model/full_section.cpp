@@ -14,8 +14,10 @@ FullSection full_section(const Model& m, const Section& s) {
   } else {
     const Section::General& g = *s.general;
     const Material& x = m.materials.at(s.material);
-    out.stiffness = offset_stiffness(x.E * g.A, g.kappa_y * x.G * g.A, g.kappa_z * x.G * g.A,
-                                     x.G * g.J, x.E * g.Iy, x.E * g.Iz, g.centroid, g.shear_centre);
+    // the stiffness of a section that does not shear, as nearly as numbers of a matrix can tell
+    const double GA = (s.shear == ShearFactor::none ? 1e6 : 1.0) * x.G * g.A;
+    out.stiffness = offset_stiffness(x.E * g.A, g.kappa_y * GA, g.kappa_z * GA, x.G * g.J,
+                                     x.E * g.Iy, x.E * g.Iz, g.centroid, g.shear_centre);
     out.mass =
         offset_mass(x.rho * g.A, g.centroid, x.rho * (g.Iy + g.Iz), x.rho * g.Iy, x.rho * g.Iz, 0);
   }

@@ -26,7 +26,7 @@ EndProperties properties_at(const Model& m, const Section& s, bool right) {
     const Section::General& g = *s.general;
     const double kappa = std::min(g.kappa_y, g.kappa_z);
     p.EI = material.E * std::min(g.Iy, g.Iz);
-    p.kGA = kappa > 0 ? kappa * material.G * g.A : infinity;
+    p.kGA = kappa > 0 && s.shear != ShearFactor::none ? kappa * material.G * g.A : infinity;
     p.GJ = material.G * g.J;
     p.rhoA = material.rho * g.A;
     p.rhoI = material.rho * std::max(g.Iy, g.Iz);
