@@ -1,5 +1,6 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/spectra/critical.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
@@ -8,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace whirl::steps {
 
@@ -45,6 +48,7 @@ class CriticalRun {
   std::vector<analysis::Critical> solve(double order, bool damped);
   void add_rows(double order, bool damped, const std::vector<analysis::Critical>& list,
                 io::Table& table);
+  void look_below();
   void add_shapes(double order, const std::vector<analysis::Critical>& list);
   void add_to_line(const std::vector<analysis::Critical>& list);
 
@@ -115,6 +119,36 @@ void CriticalRun::add_rows(double order, bool damped, const std::vector<analysis
   }
 }
 
+/// What has met its order line before the search begins is not in the list.
+void CriticalRun::look_below() {
+  const double low = analysis::lowest_speed(law_.min_speed, law_.max_speed);
+  const double order = *std::max_element(law_.orders.begin(), law_.orders.end());
+  analysis::ModesOptions o;
+  o.damped = o.certify = o.real_roots = false;
+  o.motion = results::motion_of(law_.motion);
+  o.count = 0;
+  const auto count_at = [&](double Omega) {
+    o.max_frequency = order * Omega;
+    Index n = 0;
+    for (const analysis::WhirlMode& m : analysis::whirl_modes(s_.linear, Omega, o))
+      n += m.oscillates() && m.frequency < order * Omega;
+    return n;
+  };
+  // but for what is always below it: the precession of a rotor that nothing holds
+  constexpr double next_to_standstill = 1e-3;
+  const Index below = law_.min_speed > 0 ? 0 : count_at(low) - count_at(next_to_standstill * low);
+  if (below <= 0) return;
+  const std::string said = fmt::format(
+      "critical speeds below {:.6g} rpm are not looked for: {} natural frequenc{} there "
+      "('min_speed' "
+      "begins lower)",
+      to_rpm(low), below, below == 1 ? "y lies" : "ies lie");
+  s_.summary()["assumed"].push(said);
+  s_.section.text += results::capital(said) + ". ";
+  if (!s_.job.options.quiet)
+    std::fputs(fmt::format("  {}: {}\n", s_.step.name, said).c_str(), stderr);
+}
+
 void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>& list) {
   for (const analysis::Critical& c : list) {
     if (drawn_ >= law_.shapes) return;
@@ -152,11 +186,11 @@ void CriticalRun::find(bool damped) {
     add_shapes(order, list);
     add_to_line(list);
   }
+  if (!damped) look_below();
   if (table.rows.empty())
     s_.section.text += fmt::format(
-        "No {} critical speed lies {} {:.6g} rpm. ", word,
-        law_.min_speed > 0 ? fmt::format("between {:.6g} and", to_rpm(law_.min_speed)) : "below",
-        to_rpm(law_.max_speed));
+        "No {} critical speed lies between {:.6g} and {:.6g} rpm. ", word,
+        to_rpm(analysis::lowest_speed(law_.min_speed, law_.max_speed)), to_rpm(law_.max_speed));
   mesh_.report();
   s_.add_table(word, std::move(table));
 }
@@ -173,7 +207,9 @@ void CriticalRun::execute() {
                  "circulation left out."
                : "The model has no damping: damped and undamped critical speeds are the same.";
   s_.finish(line_.empty()
-                ? fmt::format("no critical speed below {:.0f} rpm", to_rpm(law_.max_speed))
+                ? fmt::format("no critical speed between {:.6g} and {:.6g} rpm",
+                              to_rpm(analysis::lowest_speed(law_.min_speed, law_.max_speed)),
+                              to_rpm(law_.max_speed))
                 : line_ + " rpm");
 }
 

@@ -301,13 +301,15 @@ std::vector<Critical> OrderCrossings::solve(const Linearizer& linear, double tol
   return out;
 }
 
+double lowest_speed(double min_speed, double max_speed) {
+  return min_speed > 0 ? min_speed : 1e-3 * max_speed;
+}
+
 std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
                                       SpectrumCertificate* certificate) {
   if (!(options.max_speed > options.min_speed) || !(options.order > 0))
     throw run_error("E77", "critical speeds need an order above zero and a range of speeds");
-  // At standstill every rotor that turns freely has the frequency 0 = n x 0: that is no critical
-  // speed.
-  const double low = options.min_speed > 0 ? options.min_speed : 1e-3 * options.max_speed;
+  const double low = lowest_speed(options.min_speed, options.max_speed);
   CriticalOptions o = options;
   o.max_speed = std::min(o.max_speed, o.max_frequency / o.order);
   if (!(o.max_speed > low)) return {};

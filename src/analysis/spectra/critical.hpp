@@ -67,6 +67,9 @@ class OrderCrossings {
   std::vector<Step> steps_;
 };
 
+/// Where a search begins: at standstill every rotor that turns freely has the frequency 0 = n x 0,
+/// which is no critical speed.
+double lowest_speed(double min_speed, double max_speed);
 /// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the
 /// search where least is known (undamped ones are counted by inertia: none is missed).
 /// @throws Error (E77) without an order above zero and a range of speeds.

@@ -263,8 +263,8 @@ void describe(Visitor& v, model::CampbellStep& s) {
 
 void describe(Visitor& v, model::CriticalStep& s) {
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
-  v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed, "rpm", not_negative,
-             "critical speeds from this one on");
+  const bool from = v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed,
+                               "rpm", not_negative, "critical speeds from this one on");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
   v.integer("modes", s.modes, between(1, 10000),
             "critical speeds listed of each order, from the lowest");
@@ -274,6 +274,9 @@ void describe(Visitor& v, model::CriticalStep& s) {
   check_orders(v, s.orders);
   if (v.clean() && s.min_speed >= s.max_speed)
     v.error("E21", "min_speed", "min_speed is not below max_speed");
+  // at standstill itself every free motion is one
+  constexpr double next_to_standstill = 1e-6;
+  if (v.clean() && from && s.min_speed == 0) s.min_speed = next_to_standstill * s.max_speed;
 }
 
 void describe(Visitor& v, model::UnbalanceStep& s) {
