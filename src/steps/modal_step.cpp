@@ -255,13 +255,19 @@ std::string ModalRun::line() const {
   std::string line = fmt::format("{} modes at {:.0f} rpm", modes_.size(), to_rpm(law_.speed));
   for (std::size_t k = 0; k < std::min<std::size_t>(modes_.size(), 4); ++k)
     line += fmt::format("{}{:.4g}", k ? ", " : ": ", to_hz(modes_[k].frequency));
+  const la::Certificate& list = certificate_.list;
+  const std::string complete =
+      list.taken_for_zero > 0
+          ? fmt::format(", complete but for {} slower than {:.2g} Hz, which rounding hides",
+                        list.taken_for_zero, to_hz(list.zeros_within))
+          : ", complete";
   return line +
          (modes_.empty()      ? ""
           : modes_.size() > 4 ? " ... Hz"
                               : " Hz") +
          (unstable_ ? fmt::format(", {} unstable", unstable_) : "") +
          (diverging_ ? fmt::format(", {} diverging", diverging_) : "") +
-         (certificate_.complete()            ? ", complete"
+         (certificate_.complete()            ? complete
           : certificate_.stability_certain() ? ", growing ones certified"
                                              : ", not certified") +
          doubt();

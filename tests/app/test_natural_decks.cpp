@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 using whirl::test::Columns;
@@ -194,6 +195,88 @@ TEST(NaturalDecks, AnAxisMayBeOfAnyLength) {
   ASSERT_EQ(huge.exit, 0) << huge.log;
   EXPECT_EQ(huge.csv("m_modes.csv").last().at("frequency [Hz]"),
             plain.csv("m_modes.csv").last().at("frequency [Hz]"));
+}
+
+namespace {
+
+/// A rigid arm, 10 kg and 0.1 kg m2 at its middle, on a joint, and its modes.
+std::string arm(const char* joint, const char* keys) {
+  return fmt::format(
+      "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = "
+      "\"arm\"\nrotating = false\n[[shaft.section]]\nname = \"a\"\nlength = \"1 m\"\nrigid = "
+      "true\n[[disk]]\nat = \"0.5 m\"\nmass = \"10 kg\"\nIp = \"0.1 kg.m^2\"\nId = \"0.5 "
+      "kg.m^2\"\n[[joint]]\nat = \"a:start\"\n{}\n[[step]]\nname = \"m\"\ntype = \"modal\"\n{}",
+      joint, keys);
+}
+
+std::string kind_of_the_mode(const DeckRun& d) {
+  return d.summary("m").at("modes").items().front().at("kind").text();
+}
+
+}  // namespace
+
+// A mode that lives in the coordinate of its joint alone: 100 N m/rad and 0.1 kg m2 about the axis,
+// 1000 N/m and 10 kg across. Where nothing oscillates in the motion asked for, the search ends.
+TEST(NaturalDecks, ModesOfJointsAreOfTheKindOfTheirMotion) {
+  const char* const pin = "kind = \"hinge\"\naxis = [1, 0, 0]\nstiffness = \"100 N.m/rad\"";
+  const DeckRun turning(arm(pin, ""));
+  ASSERT_EQ(turning.exit, 0) << turning.log;
+  const Columns turns = turning.csv("m_modes.csv");
+  ASSERT_EQ(turns.rows.size(), 1u);
+  EXPECT_EQ(kind_of_the_mode(turning), "torsional");
+  EXPECT_NEAR(turns.last().at("frequency [Hz]"), std::sqrt(1000.0) / (2 * std::numbers::pi), 1e-9);
+  EXPECT_EQ(turns.last().at("torsional [%]"), 100);
+  const DeckRun across(arm("kind = \"slider\"\naxis = [0, 1, 1]\nstiffness = \"1000 N/m\"", ""));
+  ASSERT_EQ(across.exit, 0) << across.log;
+  const Columns slides = across.csv("m_modes.csv");
+  ASSERT_EQ(slides.rows.size(), 1u);
+  EXPECT_EQ(kind_of_the_mode(across), "lateral");
+  EXPECT_NEAR(slides.last().at("frequency [Hz]"), 10 / (2 * std::numbers::pi), 1e-9);
+  const DeckRun none(arm(pin, "motion = \"lateral\"\n"));
+  EXPECT_TRUE(none.says("0 modes")) << none.log;
+}
+
+// 20 N/m at both ends of 25.7 kg: sqrt(40/25.7) 30/pi = 11.9 rpm, less than a thousandth of 30,000.
+TEST(NaturalDecks, CriticalSpeedsFromStandstillOn) {
+  const auto deck = [](const char* keys) {
+    return rotor(linear("a:start", "kxx = \"20 N/m\"\nkyy = \"20 N/m\"\nkzz = \"20 N/m\"\n") +
+                     linear("b:end", "kyy = \"20 N/m\"\nkzz = \"20 N/m\"\n"),
+                 std::string("[model]\ngravity = \"0 m/s^2\"\n[[step]]\nname = \"c\"\ntype = "
+                             "\"critical_speeds\"\nmax_speed = \"30000 rpm\"\n") +
+                     keys);
+  };
+  const DeckRun whole(deck("min_speed = 0\n"));
+  ASSERT_EQ(whole.exit, 0) << whole.log;
+  const Columns all = whole.csv("c_undamped.csv");
+  const double mass = 20 + 7850 * std::numbers::pi / 4 * 0.05 * 0.05;
+  ASSERT_GE(all.rows.size(), 3u);
+  EXPECT_NEAR(all.rows[1][all.column("speed [rpm]")], std::sqrt(40 / mass) * 30 / std::numbers::pi,
+              0.02);
+  EXPECT_FALSE(whole.says("are not looked for")) << whole.log;
+  const DeckRun part(deck(""));
+  ASSERT_EQ(part.exit, 0) << part.log;
+  EXPECT_TRUE(part.says("critical speeds below 30 rpm are not looked for")) << part.log;
+}
+
+// 1 kN on a cantilever of 30 mm, 10 mm by 30 mm: P L^3/(3 E I) = 18 um.
+TEST(NaturalDecks, NoShearIsNoShearInGeneralSectionsToo) {
+  for (const char* centroid : {"0 mm", "1e-6 mm"}) {
+    const DeckRun d(fmt::format(
+        "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 m/s^2\"\n[[material]]\nname "
+        "= "
+        "\"s\"\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"8000 kg/m^3\"\n[[shaft]]\nmaterial = "
+        "\"s\"\nrotating = false\nshear = \"none\"\n[[shaft.section]]\nname = \"a\"\nlength = "
+        "\"0.03 "
+        "m\"\nod = \"20 mm\"\ngeneral = {{ A = \"300 mm^2\", Iy = \"22500 mm^4\", Iz = \"2500 "
+        "mm^4\", J = \"2600 mm^4\", kappa_y = 0.833, kappa_z = 0.833, centroid = [\"{}\", \"0 "
+        "mm\"] "
+        "}}\n[[bearing]]\nat = \"a:start\"\ntype = \"rigid\"\ndirections = [\"x\", \"y\", \"z\", "
+        "\"rx\", \"ry\", \"rz\"]\n[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"1000 N\", \"0 "
+        "N\"]\n[[step]]\nname = \"s\"\ntype = \"static\"\n",
+        centroid));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_NEAR(d.csv("s_deflection.csv").last().at("u_y [m]"), 18e-6, 1e-9) << centroid;
+  }
 }
 
 namespace {

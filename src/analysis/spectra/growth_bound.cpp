@@ -66,9 +66,10 @@ bool GrowthBound::damping_beats_circulation(double w, double eta) {
 }
 
 std::optional<GrowthBound::Quiet> GrowthBound::first(const la::MCK& m, double w, double w_max) {
+  if (!(w > 0.0)) return std::nullopt;  // nowhere to begin: nothing oscillates
   split(m);
   if (!symmetric_mass_) return std::nullopt;
-  for (; w <= w_max; w *= 2.0) {
+  for (; w <= w_max && std::isfinite(w); w *= 2.0) {
     if (!positive_stiffness(w) || !positive_stiffness(1e3 * w)) continue;
     for (const double eta : {1e-9, 1e-7, 1e-5})
       if (positive_damping(w, eta) && damping_beats_circulation(w, eta)) return Quiet{w, eta};

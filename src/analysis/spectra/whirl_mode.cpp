@@ -110,6 +110,7 @@ ModeKind kind_by_size(const Linearizer& linear, const WhirlMode& w) {
   const system::System& s = linear.system();
   double twist = 0, along = 0, across = 0;
   for (Index i = 0; i < s.nodes(); ++i) {
+    if (s.node(i).scalar) continue;
     const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
     twist = std::max(twist, std::abs(w.x[6 * i + 3]));
     along = std::max(along, std::abs(u[0]));
@@ -199,6 +200,10 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
                                              : 0.0;
   const double total = find_energy_shares(m, linear, w);
   if (total == 0.0 || w.lambda == 0.0) w.kind = kind_by_size(linear, w);
+  if (total == 0.0)  // in the coordinates of joints alone
+    (w.kind == ModeKind::lateral     ? w.lateral
+     : w.kind == ModeKind::torsional ? w.torsional
+                                     : w.axial) = 1.0;
   normalise_shape(linear.system(), w);
   if (w.kind == ModeKind::lateral && w.frequency != 0.0) find_direction(linear, w);
   return w;
