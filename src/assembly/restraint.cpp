@@ -66,8 +66,12 @@ class Restraint {
       if (b.to) other = {static_cast<Index>(b.to->shaft), b.to->s};
       links_.push_back({{static_cast<Index>(b.at.shaft), b.at.s}, other, resisted(b)});
     }
-    for (const model::Step& s : a.model.steps)
-      if (a.step.empty() || s.name == a.step) look_at(s);
+    // a part of a step that reports is none of the deck's: it needs what any of these does
+    const auto& steps = a.model.steps;
+    const bool known = std::any_of(steps.begin(), steps.end(),
+                                   [&](const model::Step& s) { return s.name == a.step; });
+    for (const model::Step& s : steps)
+      if (!known || s.name == a.step) look_at(s);
   }
 
   void check_axial() {

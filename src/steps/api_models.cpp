@@ -228,6 +228,11 @@ model::Model with_tables(const run::Job& parent, const ApiMachine& machine, cons
     }
   }
   for (auto& [i, table] : tables) {
+    if (m.shafts[machine.shaft].speed_ratio < 0) {  // rows go by rising speed
+      std::reverse(table.speed.begin(), table.speed.end());
+      std::reverse(table.K.begin(), table.K.end());
+      std::reverse(table.C.begin(), table.C.end());
+    }
     table.extrapolate_hold = true;
     out.bearings[i].law = std::move(table);
   }

@@ -209,6 +209,48 @@ TEST(Reports, ARotorThatTurnsBackwardsIsJudgedTheSame) {
   expect(rows[4], "level 1: Q0/QA", c * std::sqrt(k / m) / anticipated, 2, "passed");
 }
 
+// Journals in films, their tables over the shaft's own speed; nothing holds the rotor along its axis.
+TEST(Reports, FilmsOfARotorThatTurnsBackwards) {
+  const auto rows_of = [](const char* ratio) {
+    std::string deck =
+        std::string("format = 1\n[output]\nreport = false\n[shaft]\nspeed_ratio = ") + ratio + R"(
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["left", 300, 80], ["middle", 600, 100], ["right", 300, 80]]
+[[disk]]
+at = "middle:mid"
+mass = "200 kg"
+Ip = "4 kg.m^2"
+Id = "2.2 kg.m^2"
+[[probe]]
+name = "P"
+at = "left:start"
+[[step]]
+name = "a"
+type = "api_lateral"
+operating_speed = ["5000 rpm", "6000 rpm"]
+[step.stages]
+columns = ["name", "power[kW]", "speed[rpm]", "diameter[mm]", "width[mm]", "suction_density[kg/m^3]", "discharge_density[kg/m^3]"]
+rows = [["1", 300, 6000, 350, 80, 1, 1.11]]
+)";
+    for (const char* at : {"left:start", "right:end"})
+      deck += std::string("[[bearing]]\nat = \"") + at +
+              "\"\ntype = \"short_journal\"\ndiameter = \"80 mm\"\nlength = \"30 mm\"\nclearance = "
+              "\"120 um\"\nviscosity = \"0.01 Pa.s\"\n";
+    const DeckRun d(deck);
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return compliance(d, "a");
+  };
+  const std::vector<Row> ahead = rows_of("1"), back = rows_of("-1");
+  ASSERT_EQ(ahead.size(), 4u);
+  ASSERT_EQ(back.size(), 4u);
+  for (std::size_t k = 0; k < ahead.size(); ++k) {
+    EXPECT_EQ(back[k].result, ahead[k].result) << ahead[k].check;
+    EXPECT_NEAR(back[k].value, ahead[k].value, 1e-5 * std::abs(ahead[k].value)) << ahead[k].check;
+  }
+}
+
 TEST(Reports, LimitsAreSettings) {
   const DeckRun d(lateral_report(std::string("trip_speed = \"5500 rpm\"\n") + clearances + stages +
                                  R"([step.limits]
