@@ -236,6 +236,71 @@ TEST(NaturalDecks, ModesOfJointsAreOfTheKindOfTheirMotion) {
   EXPECT_TRUE(none.says("0 modes")) << none.log;
 }
 
+// A flat shaft at a speed of its own: its axes turn with it, not with the reference. Its mirror image
+// turns backwards, with angles and cross-coupling the other way round.
+TEST(NaturalDecks, FlatShaftsAtSpeedsOfTheirOwn) {
+  const auto deck = [](double ratio, const char* kzz, const char* step) {
+    const double sense = ratio < 0 ? -1 : 1, share = std::abs(ratio);
+    std::string text = fmt::format(
+        "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 m/s^2\"\n[shaft]\nname = "
+        "\"r\"\nmaterial = \"steel\"\nspeed_ratio = {}\ndamping = {{ external_beta = \"2e-5 s\" "
+        "}}\n",
+        ratio);
+    for (const int length : {300, 550})
+      text += fmt::format(
+          "[[shaft.section]]\nname = \"s{0}\"\nlength = \"{0} mm\"\nod = \"40 mm\"\ngeneral = {{ A "
+          "= "
+          "\"1200 mm^2\", Iy = \"1e5 mm^4\", Iz = \"1.4e5 mm^4\", J = \"2e5 mm^4\", kappa_y = "
+          "0.85, "
+          "kappa_z = 0.85, angle = \"{1} deg\" }}\n",
+          length, 20 * sense);
+    text +=
+        "[[disk]]\nname = \"d\"\nat = \"s300:end\"\nmass = \"15 kg\"\nIp = \"0.12 kg.m^2\"\nId = "
+        "\"0.07 kg.m^2\"\n[[probe]]\nname = \"p\"\nat = \"d\"\n";
+    for (const char* at : {"s300:start", "s550:end"})
+      text += fmt::format(
+          "[[bearing]]\nat = \"{}\"\ntype = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = \"2e7 N/m\"\nkzz "
+          "= "
+          "\"{} N/m\"\nkyz = \"{} N/m\"\nkzy = \"{} N/m\"\ncyy = \"5e3 N.s/m\"\nczz = \"5e3 "
+          "N.s/m\"\n",
+          at, kzz, 1e6 * sense, -1e6 * sense);
+    const std::string speeds =
+        std::string(step) == "stability"
+            ? fmt::format("speed = {{ start = \"{} rpm\", stop = \"{} rpm\", points = 3 }}\n",
+                          2700 / share, 3600 / share)
+            : fmt::format("speed = {{ values = [\"{} rpm\", \"{} rpm\"] }}\n", 2000 / share,
+                          4500 / share);
+    return text +
+           fmt::format(
+               "[[unbalance]]\nat = \"d\"\namount = \"50 g.mm\"\nphase = \"{} deg\"\n[[step]]\n"
+               "name = \"s\"\ntype = \"{}\"\n{}",
+               60 * sense, step, speeds);
+  };
+  // bands on equal supports, where the matrices are constant; responses on unequal ones
+  const auto band_of = [&](double ratio) {
+    return DeckRun(deck(ratio, "2e7", "stability")).csv("s_bands.csv").last();
+  };
+  const auto response_of = [&](double ratio) {
+    return DeckRun(deck(ratio, "1.5e7", "unbalance_response")).csv("s_response.csv");
+  };
+  const auto band = band_of(1);
+  const Columns response = response_of(1);
+  for (const double ratio : {2.0, -1.0, -2.5}) {
+    const auto own = band_of(ratio);
+    const double share = std::abs(ratio);
+    for (const char* edge : {"from [rpm]", "to [rpm]"})
+      EXPECT_NEAR(own.at(edge) * share, band.at(edge), 1e-6 * band.at(edge)) << ratio;
+    EXPECT_NEAR(own.at("largest growth [1/s]"), band.at("largest growth [1/s]"), 1e-3) << ratio;
+    const Columns r = response_of(ratio);
+    ASSERT_EQ(r.rows.size(), 2u);
+    for (const char* axis : {"p y amplitude [m]", "p z amplitude [m]"})
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double expected = response.rows[k][response.column(axis)];
+        EXPECT_NEAR(r.rows[k][r.column(axis)], expected, 1e-6 * expected) << ratio << " " << axis;
+      }
+  }
+}
+
 // 20 N/m at both ends of 25.7 kg: sqrt(40/25.7) 30/pi = 11.9 rpm, less than a thousandth of 30,000.
 TEST(NaturalDecks, CriticalSpeedsFromStandstillOn) {
   const auto deck = [](const char* keys) {

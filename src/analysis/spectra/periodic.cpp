@@ -121,6 +121,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
       raw_(linear.system().make_matrices()) {
   WHIRL_EXPECTS(harmonics >= 0);
   require(linear.running());
+  find_ratio(Omega);
   // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and
   // half a revolution.
   sample(Omega, 0.0, {});
@@ -140,7 +141,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   }
   harmonics_ = varies > steady ? 1 : 0;
   // A harmonic left out is joined to the constant part by those before it.
-  const double share = joined / std::max(std::abs(Omega), 1e-300);
+  const double share = joined / std::max(std::abs(speed(Omega)), 1e-300);
   while (harmonics_ > 0 && harmonics_ < harmonics &&
          !(std::pow(share, static_cast<double>(harmonics_ + 1)) < negligible))
     ++harmonics_;
@@ -168,6 +169,37 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
         active_.push_back(motion_.active()[idx(6 * i + c)]);
 }
 
+void RotatingAxes::find_ratio(double Omega) {
+  const system::System& s = linear_.system();
+  const la::BlockPattern& p = s.pattern();
+  double turns = 0;
+  for (Index i = 0; i < s.nodes() && turns == 0; ++i)
+    if (!s.node(i).scalar && s.node(i).line >= 0) turns = linear_.running().ratio(s.node(i).line);
+  if (turns != 0) ratio_ = turns;
+  sample(Omega, 0.0, {});
+  const la::MCK first = raw_;
+  const double K = steady * largest(first.K), M = steady * largest(first.M);
+  sample(Omega, 0.7, {});
+  double found = 0;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const double ratio =
+        s.node(i).scalar || s.node(i).line < 0 ? 0.0 : linear_.running().ratio(s.node(i).line);
+    if (ratio == 0) continue;
+    const Index own = p.slot(i, i);
+    const bool varies = (first.K.block(own) - raw_.K.block(own)).cwiseAbs().maxCoeff() > K ||
+                        (first.M.block(own) - raw_.M.block(own)).cwiseAbs().maxCoeff() > M;
+    if (!varies) continue;
+    if (found * ratio < 0)
+      throw run_error(
+          "E88",
+          "asymmetric or cracked shafts that turn against one another: no axes exist in "
+          "which the matrices are constant or have one period",
+          "use a transient step");
+    found = ratio;
+  }
+  if (found != 0) ratio_ = found;
+}
+
 bool RotatingAxes::still_balanced(double Omega) {
   if (!moved_) return false;
   const Equilibrium& e = linear_.equilibrium();
@@ -192,13 +224,14 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
-  const bool inside = running.tangent_at(e.state.frames, Omega, e.state.q, theta, raw_);
+  const bool inside = running.tangent_at(e.state.frames, Omega, e.state.q, theta / ratio_, raw_);
   running.set_whirl(0.0);
   if (!inside)
     throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   const system::System& s = linear_.system();
   const la::BlockPattern& p = s.pattern();
   const la::MCK& fixed = motion_.reduce(raw_);
+  const double W = speed(Omega);
   std::vector<Matrix<6>> T(idx(s.nodes())), D(idx(s.nodes()));
   for (Index i = 0; i < s.nodes(); ++i) {
     const Mat3& chart = e.state.frames.axes(i);
@@ -212,9 +245,9 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
                       C = T[idx(i)].transpose() * fixed.C.block(k) * T[idx(j)];
       const Matrix<6> MJ = M * D[idx(j)];
       turned_.M.block(k) = M;
-      turned_.C.block(k) = C + 2.0 * Omega * MJ;
+      turned_.C.block(k) = C + 2.0 * W * MJ;
       turned_.K.block(k) = T[idx(i)].transpose() * fixed.K.block(k) * T[idx(j)] +
-                           Omega * C * D[idx(j)] + Omega * Omega * MJ * D[idx(j)];
+                           W * C * D[idx(j)] + W * W * MJ * D[idx(j)];
     }
 }
 
@@ -226,6 +259,7 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
   // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic
   // of its points less those of the product.
   const Index parts = 2 * harmonics_ + 1, points = 4 * harmonics_ + 4;
+  const double W = speed(Omega);
   const la::BlockPattern& p = linear_.system().pattern();
   for (la::BlockMatrix<6>* m : {&hill_.M, &hill_.C, &hill_.K})
     m->set_zero();
@@ -239,11 +273,11 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
       const double w = static_cast<double>(step_ * h), c = std::cos(w * theta),
                    s = std::sin(w * theta);
       f[2 * h - 1] = c;
-      g[2 * h - 1] = -w * Omega * s;
-      gg[2 * h - 1] = -w * w * Omega * Omega * c;
+      g[2 * h - 1] = -w * W * s;
+      gg[2 * h - 1] = -w * w * W * W * c;
       f[2 * h] = s;
-      g[2 * h] = w * Omega * c;
-      gg[2 * h] = -w * w * Omega * Omega * s;
+      g[2 * h] = w * W * c;
+      gg[2 * h] = -w * w * W * W * s;
     }
     for (Index i = 0; i < p.size(); ++i)
       for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
@@ -307,9 +341,12 @@ VecXc RotatingAxes::first_order_of(const VecX& x) const {
   return a;
 }
 
-VecXc RotatingAxes::response(double Omega, const VecXc& f) {
-  WHIRL_EXPECTS(f.size() == linear_.system().size());
+VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
+  WHIRL_EXPECTS(forces.size() == linear_.system().size());
   const la::MCK& m = at(Omega);
+  // of exp(i theta) with the angle of the axes, which may run backwards
+  const bool backward = ratio_ < 0;
+  const VecXc f = backward ? VecXc(forces.conjugate()) : forces;
   const system::System& s = linear_.system();
   const Index parts = 2 * harmonics_ + 1;
   VecX x = VecX::Zero(6 * pattern_->size());
@@ -333,7 +370,8 @@ VecXc RotatingAxes::response(double Omega, const VecXc& f) {
   if (direct->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
     return VecXc::Constant(f.size(), Complex(nan, nan));
   direct->solve(x);
-  return first_order_of(x);
+  const VecXc a = first_order_of(x);
+  return backward ? VecXc(a.conjugate()) : a;
 }
 
 Index RotatingAxes::negative_stiffnesses(double Omega) {
@@ -391,7 +429,8 @@ class BandSearch {
     std::optional<la::Mode> x = solver_.follow(axes_.at(Omega, Complex(0, infinity)), *near.mode);
     if (!x || !is_motion(*x)) return at(Omega);
     // copies lie a speed or two apart
-    if (std::abs(x->lambda - near.mode->lambda) > 0.25 * std::abs(Omega)) return at(Omega);
+    if (std::abs(x->lambda - near.mode->lambda) > 0.25 * std::abs(axes_.speed(Omega)))
+      return at(Omega);
     settle(Omega, *x);
     return growth_of(*x);
   }
@@ -423,7 +462,7 @@ class BandSearch {
     return extrapolate(a, {middle, follow(middle, b.growth)}, b);
   }
   /// Growth that says nothing.
-  double noise(double Omega) const { return unnoticed_share(axes_) * std::abs(Omega); }
+  double noise(double Omega) const { return unnoticed_share(axes_) * std::abs(axes_.speed(Omega)); }
   Index evaluations = 0;
 
  private:

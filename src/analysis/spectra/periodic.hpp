@@ -1,8 +1,9 @@
 // Rotors whose matrices turn with them (shafts with unequal principal stiffnesses, tilted or
-// unequal bodies): small motions in axes that rotate with the reference speed, where they are
-// constant on isotropic supports.
+// unequal bodies): small motions in axes that rotate with the rotor, where they are constant on
+// isotropic supports.
 //
-// q = T(theta) x, theta = Omega t: T turns (u_y, u_z) and (gamma2, gamma3) of every node about the
+// q = T(theta) x, theta = Omega t of the rotor (its speed_ratio times the reference's, with its
+// sign): T turns (u_y, u_z) and (gamma2, gamma3) of every node about the
 // axis by theta and leaves axial motion and twist alone. With J the quarter turn, T' = Omega J T,
 //   M~ = T^T M T,   C~ = T^T C T + 2 Omega M~ J,   K~ = T^T K T + Omega T^T C T J + Omega^2 M~ J^2.
 // On isotropic supports these do not depend on theta: a quadratic eigenvalue problem on the pattern
@@ -25,13 +26,15 @@ class RotatingAxes {
   /// harmonics: most of H where the matrices are periodic; 0 is enough on isotropic supports and is
   /// chosen then whatever is asked for, and fewer where what varies (a sagging shaft) joins motions so
   /// little that bands of the rest would grow by less than 1e-6 of the speed.
-  /// @throws Error E88, the lines turn at different speeds.
+  /// @throws Error E88, the lines turn at different speeds, or what is unequal turns both ways.
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
                Motion motion = Motion::lateral);
 
   /// @throws Error E88, the lines turn at different speeds.
   static void require(const SteadySystem& running);
 
+  /// Speed of the axes at one of the reference, rad/s, with its sign.
+  double speed(double Omega) const { return ratio_ * Omega; }
   /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for
   /// hysteretic damping.
   /// @throws Error (E76) when the state lies outside the range of an element.
@@ -52,7 +55,7 @@ class RotatingAxes {
   /// nothing gyroscopic held it).
   Index negative_stiffnesses(double Omega);
 
-  /// Steady motion Re(a exp(i theta)), theta = Omega t, under forces Re(f exp(i theta)) that turn with
+  /// Steady motion Re(a exp(i theta)), theta = |ratio| Omega t, under forces Re(f exp(i theta)) that turn with
   /// the rotor, both in fixed axes and of length system().size(): what unbalance does to a rotor
   /// whose stiffness turns with it. Lateral; parts at other multiples of the speed, which unequal
   /// supports cause, are left out of a.
@@ -61,14 +64,17 @@ class RotatingAxes {
   VecXc response(double Omega, const VecXc& f);
 
  private:
+  /// Of the lines whose matrices turn with them; where none do, of the first that turns.
+  void find_ratio(double Omega);
   VecXc first_order_of(const VecX& x) const;
-  /// Matrices in rotating axes at one angle, on the system's pattern, into turned_.
+  /// Matrices in rotating axes at one angle of these, on the system's pattern, into turned_.
   void sample(double Omega, double theta, Complex lambda);
   /// The equilibrium at hand serves this speed too.
   bool still_balanced(double Omega);
   Linearizer& linear_;
   MotionReduction motion_;
   bool turning_ = false, moved_ = false;
+  double ratio_ = 1.0;  ///< speed of the axes over the reference's
   Index harmonics_ = 0, step_ = 2;
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
