@@ -115,9 +115,18 @@ double largest(const std::vector<double>& orders) {
   return n;
 }
 
+/// Of the fastest shaft, over the reference; at least 1.
+double largest_ratio(const Model& m) {
+  double most = 1;
+  for (const Shaft& s : m.shafts)
+    if (s.rotating) most = std::max(most, std::abs(s.speed_ratio));
+  return most;
+}
+
 /// Highest spin a transient is known to reach, rad/s; 0: nothing says.
 double top_speed(const Model& m, const Step& step, const TransientStep& law) {
-  double top = std::max(std::abs(law.speed0), std::abs(law.stop_speed));
+  const double ratio = largest_ratio(m);
+  double top = ratio * std::max(std::abs(law.speed0), std::abs(law.stop_speed));
   for (const Shaft& s : m.shafts)
     top = std::max(top, std::abs(s.spin0));
   for (const Drive& d : m.drives) {
@@ -131,7 +140,7 @@ double top_speed(const Model& m, const Step& step, const TransientStep& law) {
     }
   }
   for (const Event& e : m.events)
-    if (e.kind == Event::Kind::speed) top = std::max(top, std::abs(e.value));
+    if (e.kind == Event::Kind::speed) top = std::max(top, ratio * std::abs(e.value));
   return top;
 }
 
@@ -176,10 +185,7 @@ struct Demand {
     return modes(s.modes, infinity, MotionKind::all);
   }
   Resolution operator()(const UnbalanceStep& s) const {
-    double lateral = 0;
-    for (const Shaft& shaft : m.shafts)
-      lateral = std::max(lateral, std::abs(shaft.speed_ratio) * top_of(s.speed));
-    return {lateral, 0.0, 0};
+    return {largest_ratio(m) * top_of(s.speed), 0.0, 0};
   }
   Resolution operator()(const HarmonicStep& s) const {
     double top = s.frequency ? top_of(*s.frequency) : 0.0;
@@ -193,8 +199,12 @@ struct Demand {
   Resolution operator()(const TorsionalStep& s) const {
     return {0.0, torsional_bound(m, s.modes), 0};
   }
-  Resolution operator()(const ApiLateralStep& s) const { return {s.max_speed, 0.0, 0}; }
-  Resolution operator()(const BalancingStep& s) const { return {largest(s.speeds), 0.0, 0}; }
+  Resolution operator()(const ApiLateralStep& s) const {
+    return {largest_ratio(m) * s.max_speed, 0.0, 0};
+  }
+  Resolution operator()(const BalancingStep& s) const {
+    return {largest_ratio(m) * largest(s.speeds), 0.0, 0};
+  }
   Resolution operator()(const ApiTorsionalStep& s) const {
     return {0.0, torsional_bound(m, s.modes), 0};
   }
