@@ -145,6 +145,13 @@ void HarmonicSolver::solve_held(VecXc& x) {
       left[k] = 0;
     first_.solver->solve(left);
     x += turned + left;
+    // A matrix that is singular at a frequency of the twist has no answer at all.
+    const VecXc wrong = f - multiply(x);
+    for (const Index k : first_.at)
+      if (std::abs(wrong[k]) > 1e-6 * torque_size(linear_.system(), *matrices_, x, f, k)) {
+        x.setConstant(Complex(nan, nan));
+        return;
+      }
     return;
   }
   // Rounding leaves some torque where there is none.
