@@ -259,8 +259,8 @@ void SetReport::find_modes() {
   const model::Step step = part("modes", law);
   run::Job sub(m, job_);
   results::FrequencyStep s(sub, step, "undamped modes", "undamped modes", law.max_speed);
-  const std::vector<analysis::Critical> found =
-      undamped_forward(s.linear, law.max_speed, machine_.ratio);
+  std::vector<analysis::Critical> found = undamped_forward(s.linear, law.max_speed, machine_.ratio);
+  keep_modes_of(sub.system(), machine_.shaft, found);
   std::vector<int> asked;
   for (const double k : law_.modes)
     asked.push_back(static_cast<int>(k));
@@ -505,7 +505,8 @@ void SetReport::respond(const PlacedMode& mode) {
   const model::Step s = part(fmt::format("mode_{}", mode.number), law);
   run::Job sub(m, job_);
   sub.build_for(s);
-  const UnbalanceOutcome r = run_unbalance_step(sub, s, law, law_.clearances.size());
+  const UnbalanceOutcome r = run_unbalance_step(sub, s, law, law_.clearances.size(),
+                                                {law_.operating[0], law_.operating[1], law_.trip});
   for (std::size_t k = 0; k < r.response.orders.size(); ++k)
     if (std::abs(std::abs(r.response.orders[k]) - machine_.ratio) < 1e-9 * machine_.ratio)
       order_ = k;
@@ -529,13 +530,14 @@ void SetReport::judge_stability() {
     const model::Model m = balanced(machine_.model);
     model::ModalStep law;
     law.speed = law_.operating[1];
-    law.modes = 8;
     law.shapes = 2;
     law.motion = model::MotionKind::lateral;
+    law.modes =
+        std::max(8, Level1::modes_below(job_, m, part("level_2", law), machine_, law.speed));
     const model::Step s = part("level_2", law);
     run::Job sub(m, job_);
     sub.build_for(s);
-    with_seals = least_stable(run_modal_step(sub, s, law), machine_.ratio * law.speed);
+    with_seals = least_stable(run_modal_step(sub, s, law), sub.system(), machine_, law.speed);
     if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())
       seals_figure = sub.report.sections.back().figures.front().name;
     close(sub, "stability, level 2");

@@ -39,9 +39,14 @@ double anticipated_of(const model::ApiStage& s, const model::ApiLateralStep& law
 
 }  // namespace
 
-WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes, double Omega) {
-  const auto lateral = [](const analysis::WhirlMode& m) {
-    return m.kind == analysis::ModeKind::lateral && m.oscillates();
+WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
+                          const system::System& system, const ApiMachine& machine, double speed) {
+  const double Omega = machine.ratio * speed;
+  // what another rotor of the deck does, and this one not with it, is none of its modes
+  constexpr double with_it = 1e-6;
+  const auto lateral = [&](const analysis::WhirlMode& m) {
+    return m.kind == analysis::ModeKind::lateral && m.oscillates() &&
+           moves(system, m.x, machine.shaft, with_it);
   };
   const analysis::WhirlMode *best = nullptr, *forward = nullptr, *any = nullptr;
   for (const analysis::WhirlMode& m : modes) {
@@ -53,7 +58,8 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes, double 
       best = &m;
   }
   const analysis::WhirlMode* found = best ? best : forward ? forward : any;
-  return found ? WhirlingMode{found->log_decrement, found->frequency} : WhirlingMode{};
+  return found ? WhirlingMode{found->log_decrement, found->frequency, best != nullptr}
+               : WhirlingMode{};
 }
 
 Level1::Level1(run::Job& parent, const model::Step& step, const model::ApiLateralStep& law,
@@ -114,12 +120,31 @@ WhirlingMode Level1::at(double q) {
     std::get<model::CrossCoupling>(m.bearings[i].law).k = sense * share * q;
   const assembly::Built built = assembly::build_system(m, sub_->mesh, step_.name);
   analysis::Linearizer linear = s_->linearizer_of(built.system);
+  const double speed = law_.operating[1];
   analysis::ModesOptions o;
-  o.count = 16;
+  o.count = 0;  // all that are slower than the rotor
+  o.max_frequency = machine_.ratio * speed;
   o.motion = analysis::Motion::lateral;
+  analysis::SpectrumCertificate certificate;
+  WhirlingMode found = least_stable(analysis::whirl_modes(linear, speed, o, &certificate),
+                                    built.system, machine_, speed);
+  if (!certificate.complete()) s_->certify(certificate, fmt::format("at Q = {:.5g} N/m", q));
+  if (found.driven) return found;
+  o.count = 16;  // none is: the slowest then
+  o.max_frequency = infinity;
   o.certify = false;
-  return least_stable(analysis::whirl_modes(linear, law_.operating[1], o),
-                      machine_.ratio * law_.operating[1]);
+  return least_stable(analysis::whirl_modes(linear, speed, o), built.system, machine_, speed);
+}
+
+int Level1::modes_below(const run::Job& parent, const model::Model& m, const model::Step& step,
+                        const ApiMachine& machine, double speed) {
+  run::Job job(m, parent);
+  results::FrequencyStep s(job, step, "modal", "modes slower than the rotor", speed);
+  analysis::ModesOptions o;
+  o.count = 0;
+  o.max_frequency = machine.ratio * speed;
+  o.motion = analysis::Motion::lateral;
+  return static_cast<int>(analysis::whirl_modes(s.linear, speed, o).size());
 }
 
 Level1::Curve Level1::find_curve() {
@@ -148,8 +173,9 @@ double Level1::find_critical_ratio() const {
   const assembly::Built built = assembly::build_system(m, meshes::make_mesh(m), step_.name);
   analysis::Linearizer linear = s_->linearizer_of(built.system);
   for (const double top : {2.0, 10.0}) {
-    const std::vector<analysis::Critical> found =
+    std::vector<analysis::Critical> found =
         undamped_forward(linear, top * law_.operating[1], machine_.ratio);
+    keep_modes_of(built.system, machine_.shaft, found);
     if (!found.empty()) return law_.operating[1] / found.front().speed;
   }
   return nan;

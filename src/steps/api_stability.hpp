@@ -13,10 +13,13 @@ namespace whirl::steps {
 
 struct WhirlingMode {
   double log_decrement = nan, frequency = nan;  ///< -, rad/s
+  bool driven = false;                          ///< forward, and slower than the rotor
 };
-/// Of the forward lateral modes slower than the rotor the one of least log decrement; where there is
-/// none, the slowest forward one, and without these the slowest lateral one.
-WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes, double Omega);
+/// Of the forward lateral modes of the machine's rotor that are slower than it at a speed of the
+/// reference, the one of least log decrement; where there is none, the slowest forward one, and
+/// without these the slowest lateral one.
+WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
+                          const system::System& system, const ApiMachine& machine, double speed);
 
 /// The analysis of one set of bearings, without its seals.
 class Level1 {
@@ -27,6 +30,9 @@ class Level1 {
   std::vector<results::Check> judge(const std::optional<WhirlingMode>& with_seals,
                                     const std::string& seals_figure);
   run::Job& job() { return *sub_; }
+  /// Number of lateral modes slower than the rotor at a speed of the reference.
+  static int modes_below(const run::Job& parent, const model::Model& m, const model::Step& step,
+                         const ApiMachine& machine, double speed);
 
  private:
   /// The cross-coupled stiffness at which the mode no longer decays; nan: more than ten times the

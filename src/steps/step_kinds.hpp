@@ -31,9 +31,10 @@ struct UnbalanceOutcome {
   analysis::UnbalanceResponse response;
   std::vector<analysis::ResponsePeak> peaks;  ///< of the probes that are shown
 };
-/// beside: number of the deck's last probes that are computed, not shown.
+/// beside: number of the deck's last probes that are computed, not shown. operating: speeds, rad/s,
+/// lowest and highest first, at which growth is looked for; empty: those of the step.
 UnbalanceOutcome run_unbalance_step(run::Job&, const model::Step&, const model::UnbalanceStep&,
-                                    std::size_t beside = 0);
+                                    std::size_t beside = 0, std::vector<double> operating = {});
 void run_harmonic_step(run::Job&, const model::Step&, const model::HarmonicStep&);
 void run_sensitivity_step(run::Job&, const model::Step&, const model::SensitivityStep&);
 void run_torsional_step(run::Job&, const model::Step&, const model::TorsionalStep&);

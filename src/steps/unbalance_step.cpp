@@ -450,12 +450,14 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   return o;
 }
 
-/// The middle and the end of the range, and the highest response. The bands of an asymmetric rotor
+/// The operating speeds and their middle, the middle and the end of the range, and the highest
+/// response. The bands of an asymmetric rotor
 /// are narrow, and a look at one is cheap.
 std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Largest& response,
-                                    bool asymmetric) {
+                                    bool asymmetric, const std::vector<double>& operating) {
   const int parts = asymmetric ? 16 : 2;
-  std::vector<double> out;
+  std::vector<double> out = operating;
+  if (operating.size() > 1) out.push_back(0.5 * (operating[0] + operating[1]));
   if (response.amplitude > 0) out.push_back(response.speed);
   for (int k = 1; k <= parts; ++k)
     out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
@@ -465,7 +467,8 @@ std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Lar
 }  // namespace
 
 UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
-                                    const model::UnbalanceStep& law, std::size_t beside) {
+                                    const model::UnbalanceStep& law, std::size_t beside,
+                                    std::vector<double> operating) {
   analysis::UnbalanceOptions o = unbalance_options(job, law);
   WHIRL_EXPECTS(beside <= o.probes.size());
   const std::vector<analysis::ResponseProbe> shown(
@@ -497,7 +500,9 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   io::Table found =
       peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, largest));
   results::warn_of_tables(job, step.name, o.speeds.front(), o.speeds.back());
-  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor));
+  if (operating.empty() && law.operating[1] > 0)
+    operating.assign(law.operating.begin(), law.operating.end());
+  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor, operating));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, shown, o.outputs), false);

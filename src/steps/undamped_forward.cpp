@@ -30,6 +30,23 @@ std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, d
   return out;
 }
 
+bool moves(const system::System& system, const VecXc& shape, std::size_t line, double share) {
+  double here = 0, largest = 0;
+  for (Index i = 0; i < system.nodes(); ++i) {
+    if (system.node(i).scalar) continue;
+    const double u = shape.segment<2>(6 * i + 1).norm();
+    largest = std::max(largest, u);
+    if (system.node(i).line == static_cast<Index>(line)) here = std::max(here, u);
+  }
+  return here > share * largest;
+}
+
+void keep_modes_of(const system::System& system, std::size_t line,
+                   std::vector<analysis::Critical>& modes) {
+  std::erase_if(modes,
+                [&](const analysis::Critical& c) { return !moves(system, c.mode.x, line, 0.01); });
+}
+
 double RealShape::at(double place) const {
   const auto after = std::lower_bound(s.begin(), s.end(), place);
   if (after == s.begin()) return u.front();

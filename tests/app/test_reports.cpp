@@ -251,6 +251,44 @@ rows = [["1", 300, 6000, 350, 80, 1, 1.11]]
   }
 }
 
+// A slow rotor beside it, on bearings of its own, whose modes are the first eight of the deck.
+TEST(Reports, AnotherRotorOfTheDeckChangesNothing) {
+  const auto rows_of = [](const std::string& beside) {
+    std::string deck =
+        lateral_report(std::string("bearings = [\"spring\"]\n") + clearances + stages,
+                       R"([[bearing]]
+name = "seal"
+at = "mass"
+type = "cross_coupling"
+k = "1e5 N/m"
+)" + beside);
+    const std::string shaft = "[shaft]\n";
+    deck.replace(deck.find(shaft), shaft.size(), "[[shaft]]\n");
+    const DeckRun d(deck);
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return compliance(d, "l");
+  };
+  std::string other = R"([[shaft]]
+name = "other"
+material = "steel"
+origin = ["0 mm", "1 m", "0 mm"]
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["long", 4000, 20]]
+)";
+  for (const char* at : {"other/long:start", "other/long:end"})
+    other +=
+        std::string("[[bearing]]\nat = \"") + at +
+        "\"\ntype = \"linear\"\nkxx = \"1e6 N/m\"\nkyy = \"1e5 N/m\"\nkzz = \"2e5 N/m\"\ncyy = "
+        "\"100 N.s/m\"\nczz = \"100 N.s/m\"\n";
+  const std::vector<Row> alone = rows_of(""), two = rows_of(other);
+  ASSERT_EQ(alone.size(), 6u);
+  ASSERT_EQ(two.size(), 6u);
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    EXPECT_EQ(two[k].result, alone[k].result) << alone[k].check;
+    EXPECT_NEAR(two[k].value, alone[k].value, 1e-6 * std::abs(alone[k].value)) << alone[k].check;
+  }
+}
+
 TEST(Reports, LimitsAreSettings) {
   const DeckRun d(lateral_report(std::string("trip_speed = \"5500 rpm\"\n") + clearances + stages +
                                  R"([step.limits]
@@ -408,6 +446,28 @@ TEST(Reports, AResonanceWithoutDampingIsSaid) {
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].result, "FAILED");
   EXPECT_LT(rows[0].value, 0);
+}
+
+// At the very speed of a mode the matrix may be singular to the last digit, or not.
+TEST(Reports, AResonanceWithoutDampingIsSaidWhereverTheSpeedsEnd) {
+  for (int k = 0; k < 12; ++k) {
+    const std::string inertia = std::to_string(3.0 + 0.37 * k);
+    std::string deck = torsional_report(
+        "stress_limit = \"50 MPa\"\n[[step.torque]]\nname = \"once\"\nat = \"A\"\norder = "
+        "1\namplitude = \"1 N.m\"\n");
+    const std::string given = "Ip = \"3 kg.m^2\"", speeds = "[\"1000 rpm\", \"1100 rpm\"]";
+    deck.replace(deck.find(given), given.size(), "Ip = \"" + inertia + " kg.m^2\"");
+    const double f = std::sqrt(80e9 * J * (1.0 + 1.0 / std::stod(inertia))) / (2 * pi);
+    deck.replace(deck.find(speeds), speeds.size(),
+                 "[\"" + std::to_string(59 * f) + " rpm\", \"" +
+                     std::to_string(60 * f + 7 * k + 1) + " rpm\"]");
+    const DeckRun d(deck);
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const auto rows = compliance(d, "t");
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[1].result, "FAILED") << inertia;
+    EXPECT_TRUE(std::isnan(rows[1].value)) << inertia << ": " << rows[1].value;
+  }
 }
 
 TEST(Reports, BalancingFindsTheUnbalance) {
