@@ -111,12 +111,19 @@ TEST(Resolution, StepsInTimeAndOfEquilibria) {
   model::TransientStep transient;
   expect("nothing says how fast", transient, lateral(4), lateral(4));
   transient.speed0 = -200;
-  expect("initial speed", transient, 300, 300);
+  expect("initial speed, of the reference: the shaft turns at twice of it", transient, 600, 600);
   transient.stop_speed = 400;
-  expect("stop speed", transient, 600, 600);
+  expect("stop speed", transient, 1200, 1200);
+  transient.stop_speed = 0;
   model::Model m = uniform(transient);
   m.shafts[0].spin0 = -500;
-  EXPECT_NEAR(model::resolution_of(m).lateral, 750, 1e-9);
+  EXPECT_NEAR(model::resolution_of(m).lateral, 750, 1e-9);  // its own
+  model::BalancingStep balancing;
+  balancing.speeds = {300, 500};
+  expect("balancing", balancing, 1000, 0);
+  model::ApiLateralStep report;
+  report.max_speed = 700;
+  expect("lateral report", report, 1400, 0);
   model::StaticStep statics;
   expect("one load step", statics, 0, 0, 0);
   statics.load_steps = 2;
