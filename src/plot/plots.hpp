@@ -92,11 +92,11 @@ struct SpectrumTrace {
   std::vector<double> frequency, amplitude;
 };
 Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
-                      std::string quantity, std::string unit, Amplitude convention,
+                      const std::string& quantity, const std::string& unit, Amplitude convention,
                       std::span<const double> orders);
 /// The same as a map of colours.
 Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces,
-                        std::string quantity, std::string unit, Amplitude convention,
+                        const std::string& quantity, const std::string& unit, Amplitude convention,
                         bool logarithmic = true);
 
 /// Undamped critical speeds (rad/s) against support stiffness (N/m), and the supports' own

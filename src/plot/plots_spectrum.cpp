@@ -111,7 +111,7 @@ void add_amplitude_bar(Axes& a, const Waterfall& w) {
 }  // namespace
 
 Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
-                      std::string quantity, std::string unit, Amplitude convention,
+                      const std::string& quantity, const std::string& unit, Amplitude convention,
                       std::span<const double> orders) {
   const Extent e = extent_of(traces);
   const std::vector<const SpectrumTrace*> shown = distinct_traces(traces);
@@ -147,7 +147,7 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
 }
 
 Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces,
-                        std::string quantity, std::string unit, Amplitude convention,
+                        const std::string& quantity, const std::string& unit, Amplitude convention,
                         bool logarithmic) {
   Figure f;
   f.name = std::move(name);

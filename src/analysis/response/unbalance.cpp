@@ -157,6 +157,7 @@ void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double hi
 std::vector<std::size_t> UnbalanceSolver::maxima(const std::vector<SteadyPoint>& points,
                                                  std::size_t order, std::size_t probe) {
   std::vector<double> sizes;
+  sizes.reserve(points.size());
   for (const SteadyPoint& p : points)
     sizes.push_back(p.probe[order][probe].orbit().major);
   return maxima_of(sizes);
