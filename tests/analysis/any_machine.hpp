@@ -54,13 +54,16 @@ class AnyMachine {
     bool mirrored = false;  ///< z becomes -z before it is turned; what turns turns the other way
     double scale = 1;       ///< of all lengths; materials, stresses and surface speeds stay
     bool other_units = false;
-    int finer = 1;  ///< elements of each section, times
+    int finer = 1;    ///< elements of each section, times
+    double gear = 1;  ///< shafts over the reference, times: the reference turns slower by it
   };
   AnyMachine(unsigned seed, const View& view) : rng_(seed), view_(view) { build(); }
   explicit AnyMachine(unsigned seed) : AnyMachine(seed, View{}) {}
 
   const std::string& deck() const { return deck_; }
-  double top_speed() const { return top_speed_ / view_.scale; }  ///< rad/s, of the view
+  double top_speed() const {
+    return top_speed_ / (view_.scale * view_.gear);
+  }  ///< rad/s, of the view
   /// Matrices depend on the rate of the motion: tables against frequency, hysteretic damping.
   bool by_rate() const { return by_rate_; }
   bool has(const std::string& kind) const { return kinds_.contains(kind); }
@@ -110,7 +113,9 @@ class AnyMachine {
     return fmt::format("{} = \"{:.17g} deg\"\n", name,
                        (view_.angle + sense() * rad) * 57.29577951308232);
   }
-  std::string ratio(double r) const { return fmt::format("speed_ratio = {:.17g}\n", sense() * r); }
+  std::string ratio(double r) const {
+    return fmt::format("speed_ratio = {:.17g}\n", sense() * r * view_.gear);
+  }
 
   // --- the machine
   void build() {

@@ -1,6 +1,6 @@
 // Random machines of every kind: lists of modes against a dense method, and what is said of a machine
-// against what is said of the same machine turned about its axis, in a mirror, in other units and on
-// another scale.
+// against what is said of the same machine turned about its axis, in a mirror, in other units, on
+// another scale and with another shaft's speed as the reference.
 #include "../validation/deck_model.hpp"
 #include "any_machine.hpp"
 #include "machine_checks.hpp"
@@ -128,11 +128,12 @@ void compare(const Said& own, const Said& seen, const AnyMachine::View& view,
 }
 
 std::vector<AnyMachine::View> views(unsigned seed) {
-  std::vector<AnyMachine::View> out(4);
+  std::vector<AnyMachine::View> out(5);
   out[0].angle = 0.7 + 0.01 * (seed % 100);
   out[1].mirrored = true;
   out[2].other_units = true;
   out[3].scale = seed % 2 ? 0.3 : 4.0;
+  out[4].gear = seed % 2 ? 2.5 : 0.4;
   return out;
 }
 
@@ -172,8 +173,9 @@ void campaign(unsigned first, unsigned machines) {
       name += kind + "; ";
     name += ")";
     const Said own = what_is_said(machine, {}, share);
-    static const char* names[] = {", turned", ", mirrored", ", other units", ", scaled"};
-    for (std::size_t v = 0; v < 4; ++v) {
+    static const char* names[] = {", turned", ", mirrored", ", other units", ", scaled",
+                                  ", geared"};
+    for (std::size_t v = 0; v < std::size(names); ++v) {
       const AnyMachine::View view = views(seed)[v];
       compare(own, what_is_said(AnyMachine(seed, view), view, share), view, name + names[v],
               alike(machine), machine.has("tilting pads"), sum);
