@@ -144,9 +144,11 @@ void SensitivityRun::find_peak(std::size_t loop) {
   if (loops_[loop].at_end) return;
   analysis::Linearizer linear(s_.linear);
   analysis::SensitivityMeter meter(linear, opened_);
-  const auto size_at = [&](double w) { return std::abs(meter.at(law_.speed, w)[loop]); };
+  const auto size_at = [&](double w) { return std::abs(meter.of(loop, law_.speed, w)); };
+  // where |S| is flat to its rounding
+  constexpr double flat = 1e-7;
   loops_[loop].at =
-      analysis::find_maximum(grid_[top - 1], grid_[top], size(top), grid_[top + 1], 1e-9, size_at);
+      analysis::find_maximum(grid_[top - 1], grid_[top], size(top), grid_[top + 1], flat, size_at);
   loops_[loop].peak = size_at(loops_[loop].at);
 }
 

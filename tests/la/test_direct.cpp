@@ -91,6 +91,42 @@ TYPED_TEST(Direct, MatchesDenseOnChainsTreesAndGraphs) {
   }
 }
 
+/// Products of blocks in a factorisation.
+std::size_t products(const BlockPattern& p, lu::Ordering o) {
+  const lu::Symbolic symbolic(p, all_active(p), o);
+  const auto entries = static_cast<std::size_t>(symbolic.entries());
+  return 2 * entries + 2 * static_cast<std::size_t>(symbolic.plan().update_start[entries]);
+}
+
+TEST(Orders, ALongChainBetweenClustersCostsWhatAChainCosts) {
+  // a rotor of 101 nodes in two magnetic bearings: each has sensors six nodes away, and for each of
+  // its two axes a controller of six signals, all coupled
+  Pairs pairs = chain(101);
+  Index next = 101;
+  for (const auto& [magnet, sensor] : {std::pair<Index, Index>{14, 8}, {86, 92}})
+    for (int axis = 0; axis < 2; ++axis) {
+      for (Index i = next; i < next + 6; ++i)
+        for (Index j = next; j < i; ++j)
+          pairs.emplace_back(i, j);
+      pairs.emplace_back(sensor, next);
+      pairs.emplace_back(magnet, next + 5);
+      next += 6;
+    }
+  const BlockPattern p(next, pairs);
+  EXPECT_LT(products(p, lu::Ordering::best), 0.65 * products(p, lu::Ordering::amd));
+}
+
+TEST(Orders, TheBestIsNeverDearerThanMinimumDegree) {
+  std::mt19937 rng(17);
+  for (int round = 0; round < 200; ++round) {
+    const Index n = 1 + round % 40;
+    const BlockPattern p(n, round % 2 ? random_tree(n, rng) : random_graph(n, n + round % 7, rng));
+    const std::vector<int> order = lu::make_order(p, lu::Ordering::best);
+    EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), static_cast<std::size_t>(n));
+    EXPECT_LE(products(p, lu::Ordering::best), products(p, lu::Ordering::amd)) << round;
+  }
+}
+
 TYPED_TEST(Direct, LeavesOutAbsentTerms) {
   using S = TypeParam;
   std::mt19937 rng(8);

@@ -2,8 +2,6 @@
 
 #include <core/contract.hpp>
 
-#include <algorithm>
-
 namespace whirl::analysis {
 
 SensitivityMeter::SensitivityMeter(Linearizer& linear, std::vector<OpenedLoop> loops)
@@ -23,20 +21,25 @@ Complex SensitivityMeter::seen(const OpenedLoop& loop, const VecXc& x) {
   return loop.axis.x() * a.y + loop.axis.y() * a.z;
 }
 
+Complex SensitivityMeter::solve(const OpenedLoop& loop) {
+  x_.setZero();
+  for (const auto& [unknown, force] : loop.entry)
+    x_[unknown] += force;
+  solver_.solve(x_);
+  return 1.0 + seen(loop, x_);
+}
+
 const std::vector<Complex>& SensitivityMeter::at(double Omega, double w) {
   WHIRL_EXPECTS(w > 0);
-  if (!solver_.prepare(Omega, w)) {
-    std::fill(values_.begin(), values_.end(), Complex(nan, nan));
-    return values_;
-  }
-  for (std::size_t k = 0; k < loops_.size(); ++k) {
-    x_.setZero();
-    for (const auto& [unknown, force] : loops_[k].entry)
-      x_[unknown] += force;
-    solver_.solve(x_);
-    values_[k] = 1.0 + seen(loops_[k], x_);
-  }
+  const bool regular = solver_.prepare(Omega, w);
+  for (std::size_t k = 0; k < loops_.size(); ++k)
+    values_[k] = regular ? solve(loops_[k]) : Complex(nan, nan);
   return values_;
+}
+
+Complex SensitivityMeter::of(std::size_t loop, double Omega, double w) {
+  WHIRL_EXPECTS(w > 0 && loop < loops_.size());
+  return solver_.prepare(Omega, w) ? solve(loops_[loop]) : Complex(nan, nan);
 }
 
 }  // namespace whirl::analysis

@@ -23,10 +23,15 @@ class SensitivityMeter {
   /// One S a loop at speed Omega and frequency w, rad/s; nan: w is an undamped pole of the system.
   /// @pre w > 0.
   const std::vector<Complex>& at(double Omega, double w);
+  /// That of one loop.
+  /// @pre loop < loops().
+  Complex of(std::size_t loop, double Omega, double w);
   std::size_t loops() const { return loops_.size(); }
 
  private:
   Complex seen(const OpenedLoop& loop, const VecXc& x);
+  /// With the matrices prepared.
+  Complex solve(const OpenedLoop& loop);
   std::vector<OpenedLoop> loops_;
   HarmonicSolver solver_;
   VecXc x_;
