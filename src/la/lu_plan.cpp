@@ -158,8 +158,11 @@ std::vector<int> make_best_order(const BlockPattern& pattern) {
   std::vector<int> by_degree = make_amd_order(pattern);
   if (MinimumFill::most_neighbours(pattern) > many) return by_degree;
   std::vector<int> by_fill = MinimumFill(pattern).order();
-  const std::size_t cost = products(find_columns(pattern, by_degree));
-  return products(find_columns(pattern, by_fill)) <= cost ? by_fill : by_degree;
+  const auto cost_of = [&](const std::vector<int>& order) {
+    return static_cast<double>(products(find_columns(pattern, order)));
+  };
+  constexpr double worth_it = 0.8;
+  return cost_of(by_fill) < worth_it * cost_of(by_degree) ? by_fill : by_degree;
 }
 
 }  // namespace

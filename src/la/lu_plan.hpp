@@ -14,8 +14,8 @@ enum class Ordering {
   two_ended,  ///< tridiagonal patterns: 0, n-1, 1, n-2, ...: no fill, and two independent chains
               ///< that overlap in the processor
   amd,        ///< approximate minimum degree on the node graph
-  best        ///< two_ended on tridiagonal patterns; on others minimum fill or amd, what
-              ///< takes fewer products of blocks
+  best        ///< two_ended on tridiagonal patterns; on others amd, or minimum fill where
+              ///< that takes far fewer products of blocks
 };
 
 /// Elimination order of the nodes: order[k] is eliminated at step k.
