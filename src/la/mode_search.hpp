@@ -88,6 +88,8 @@ struct ModeSolver::Impl : Eigenpairs {
   void certify();
   void set(const MCK& matrices);
   void solve(const MCK& matrices);
+  /// The same, once more from nothing where a list that began with known modes is not complete.
+  void solve_from_known(const MCK& matrices);
   void rescale_shift();
 };
 

@@ -370,15 +370,28 @@ ModeSolver::ModeSolver(const BlockPattern& pattern, std::span<const unsigned cha
 ModeSolver::~ModeSolver() = default;
 ModeSolver::ModeSolver(ModeSolver&&) noexcept = default;
 
+void ModeSolver::Impl::solve_from_known(const MCK& matrices) {
+  const bool started = !known.empty();
+  solve(matrices);
+  if (!started || !opt.certify || certificate.complete()) return;
+  // what was known of other matrices may hide a mode of these
+  const Work before = work;
+  known.clear();
+  sigma = 0.0;
+  solve(matrices);
+  work.factorizations += before.factorizations;
+  work.operator_products += before.operator_products;
+}
+
 const std::vector<Mode>& ModeSolver::solve_to(const MCK& m, double radius) {
   impl_->least_radius = radius;
-  impl_->solve(m);
+  impl_->solve_from_known(m);
   impl_->least_radius = 0.0;
   return impl_->result;
 }
 
 const std::vector<Mode>& ModeSolver::solve(const MCK& m) {
-  impl_->solve(m);
+  impl_->solve_from_known(m);
   return impl_->result;
 }
 
