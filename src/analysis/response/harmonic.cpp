@@ -288,26 +288,36 @@ void VariationMeter::measure(const VecXc& a, const VecXc& force, double w,
     return;
   }
   const double step = variation_step(a), eps = step == 0.0 ? 1.0 : step;  // held: its force alone
-  std::vector<double> value;
+  std::vector<double> value, behind, here;
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
     const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
     const VecX q = (turn * a).real(), v = (turn * Complex(0, w) * a).real(),
                acc = (turn * (-w * w) * a).real();
-    for (int sign : {1, -1}) {
-      const double h = sign * eps;
+    const auto evaluate = [&](double h, std::vector<double>& values) {
       const VecX q1 = s.q + h * q, v1 = s.v + h * v, a1 = s.a + h * acc;
       problem_.force = h * (turn * force).real();
       snapshot_.set(s.t, q1, v1, a1);
-      for (std::size_t m = 0; m < what.size(); ++m) {
-        value.resize(what[m].width());
-        what[m].evaluate(snapshot_, value.data());
-        for (std::size_t c = 0; c < value.size(); ++c) {
-          const double x = sign * value[c] / (2.0 * eps);
-          out[m][c] += part == 0 ? Complex(x, 0) : Complex(0, x);
-        }
+      values.clear();
+      for (const Measurement& m : what) {
+        values.resize(values.size() + m.width());
+        m.evaluate(snapshot_, values.data() + values.size() - m.width());
       }
-    }
+    };
+    evaluate(eps, value);
+    evaluate(-eps, behind);
+    here.clear();
+    std::size_t k = 0;
+    for (std::vector<Complex>& values : out)
+      for (Complex& to : values) {
+        double x = (value[k] - behind[k]) / (2.0 * eps);
+        if (!std::isfinite(x)) {  // at the end of a table: from the side within
+          if (here.empty()) evaluate(0.0, here);
+          x = std::isfinite(value[k]) ? (value[k] - here[k]) / eps : (here[k] - behind[k]) / eps;
+        }
+        to += part == 0 ? Complex(x, 0) : Complex(0, x);
+        ++k;
+      }
   }
 }
 
