@@ -87,7 +87,10 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double start = spin_at_start(m, s, shaft, x->own_speed());
     if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
-  return {};  // critical speeds look inside the table only
+  if (const auto* x = std::get_if<model::CriticalStep>(&s.law); x && x->min_speed > 0)
+    return std::pair(std::min(x->min_speed * ratio, x->max_speed * ratio),
+                     std::max(x->min_speed * ratio, x->max_speed * ratio));
+  return {};  // without min_speed, critical speeds are looked for inside the table
 }
 
 namespace {

@@ -415,6 +415,25 @@ void warn_of_held_tables(run::Job& job, const std::string& step, double low, dou
 
 }  // namespace
 
+TablesBegin where_tables_begin(const run::Job& job) {
+  TablesBegin out;
+  for (const model::Bearing& b : job.model.bearings) {
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    const double ratio = std::abs(job.model.shafts[b.at.shaft].speed_ratio);
+    if (!table || table->extrapolate_hold || table->speed.size() < 2 || ratio == 0.0) continue;
+    const double first = table->speed.front(), last = table->speed.back();
+    const double begins =
+        first * last > 0 ? std::min(std::abs(first), std::abs(last)) / ratio : 0.0;
+    if (begins <= out.speed) continue;
+    out.speed = begins;
+    out.said = fmt::format(
+        "critical speeds below {:.6g} rpm are not looked for: the table of bearing '{}' begins "
+        "there",
+        to_rpm(begins), b.name);
+  }
+  return out;
+}
+
 void warn_of_tables(run::Job& job, const std::string& step, double low, double high) {
   warn_of_held_tables(job, step, low, high);
   std::vector<UsedTable> used;

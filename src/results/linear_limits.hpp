@@ -62,6 +62,14 @@ class GapCheck {
   double most_linear_ = 0;   ///< N, of all of them
 };
 
+/// Where the tables that are not held beyond their edges begin: reference speed, rad/s, and what to
+/// say of a search that begins there; 0 where all of them know the rotor next to standstill.
+struct TablesBegin {
+  double speed = 0;
+  std::string said;
+};
+TablesBegin where_tables_begin(const run::Job& job);
+
 /// Bearings whose table ends within low .. high (reference speed, rad/s) and whose edge coefficients
 /// are held beyond (W12), and whose rows there are too far apart (W16).
 void warn_of_tables(run::Job& job, const std::string& step, double low, double high);

@@ -44,6 +44,9 @@ class CriticalRun {
   void execute();
 
  private:
+  void begin_where_tables_do();
+  /// Into the report and the summary, and to the terminal.
+  void say_assumed(const std::string& text);
   void find(bool damped);
   std::vector<analysis::Critical> solve(double order, bool damped);
   void add_rows(double order, bool damped, const std::vector<analysis::Critical>& list,
@@ -52,7 +55,7 @@ class CriticalRun {
   void add_shapes(double order, const std::vector<analysis::Critical>& list);
   void add_to_line(const std::vector<analysis::Critical>& list);
 
-  const model::CriticalStep& law_;
+  model::CriticalStep law_;
   results::FrequencyStep s_;
   results::MeshAccuracy mesh_;
   bool damping_ = false;  ///< the model has any
@@ -143,10 +146,23 @@ void CriticalRun::look_below() {
       "('min_speed' "
       "begins lower)",
       to_rpm(low), below, below == 1 ? "y lies" : "ies lie");
-  s_.summary()["assumed"].push(said);
-  s_.section.text += results::capital(said) + ". ";
+  say_assumed(said);
+}
+
+void CriticalRun::say_assumed(const std::string& text) {
+  s_.summary()["assumed"].push(text);
+  s_.section.text += results::capital(text) + ". ";
   if (!s_.job.options.quiet)
-    std::fputs(fmt::format("  {}: {}\n", s_.step.name, said).c_str(), stderr);
+    std::fputs(fmt::format("  {}: {}\n", s_.step.name, text).c_str(), stderr);
+}
+
+void CriticalRun::begin_where_tables_do() {
+  if (law_.min_speed > 0) return;
+  const results::TablesBegin tables = results::where_tables_begin(s_.job);
+  if (tables.speed <= analysis::lowest_speed(0.0, law_.max_speed) || tables.speed >= law_.max_speed)
+    return;
+  law_.min_speed = tables.speed;
+  say_assumed(tables.said);
 }
 
 void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>& list) {
@@ -197,6 +213,7 @@ void CriticalRun::find(bool damped) {
 
 void CriticalRun::execute() {
   s_.summary()["max speed [rpm]"] = to_rpm(law_.max_speed);
+  begin_where_tables_do();
   results::warn_of_tables(s_.job, s_.step.name, law_.min_speed, law_.max_speed);
   const run::PhaseTimer timer(s_.job, "critical speeds");
   damping_ = is_damped(s_.linear, law_.max_speed);
