@@ -267,7 +267,7 @@ struct Largest {
 
 /// The same of each probe into the summary.
 Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::ResponseProbe>& probes,
-                     io::Value& summary) {
+                     const std::vector<analysis::ResponsePeak>& peaks, io::Value& summary) {
   Largest largest;
   for (std::size_t p = 0; p < probes.size(); ++p) {
     double most = 0;
@@ -277,6 +277,12 @@ Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::Res
         if (a > most) most = a;
         if (a > largest.amplitude) largest = {a, x.Omega};
       }
+    // between the speeds
+    for (const analysis::ResponsePeak& peak : peaks) {
+      if (peak.probe != p || !std::isfinite(peak.amplitude)) continue;
+      most = std::max(most, peak.amplitude);
+      if (peak.amplitude > largest.amplitude) largest = {peak.amplitude, peak.speed};
+    }
     summary["largest amplitude 0-peak [m]"][probes[p].name] = most;
   }
   return largest;
@@ -494,7 +500,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   std::erase_if(peaks, [&](const analysis::ResponsePeak& p) { return p.probe >= shown.size(); });
 
   s.summary()["speeds"] = r.points.size();
-  const Largest largest = find_largest(r, shown, s.summary());
+  const Largest largest = find_largest(r, shown, peaks, s.summary());
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   io::Table found =

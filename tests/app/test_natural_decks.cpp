@@ -370,6 +370,147 @@ std::string softening(double mass, double stiffness, double damping, int points,
 
 }  // namespace
 
+namespace {
+
+/// A wheel on two supports, one of them a table from 500 to 6000 rpm.
+std::string on_a_table(const std::string& step) {
+  return R"(format = 1
+[[shaft]]
+name = "rotor"
+material = "steel"
+columns = ["length[mm]", "od[mm]"]
+rows = [[1000, 60]]
+[[disk]]
+name = "wheel"
+at = "500 mm"
+mass = "25 kg"
+[[bearing]]
+name = "A"
+at = "0 mm"
+type = "table"
+columns = ["speed[rpm]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
+rows = [[500, 8e7, 8e7, 5e4, 5e4], [3000, 7e7, 7e7, 4e4, 4e4], [6000, 6e7, 6e7, 3e4, 3e4]]
+[[bearing]]
+name = "B"
+at = "1000 mm"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "7e7 N/m"
+kzz = "7e7 N/m"
+cyy = "4e4 N.s/m"
+czz = "4e4 N.s/m"
+[[unbalance]]
+at = "wheel"
+amount = "100 g.mm"
+[[probe]]
+name = "P"
+at = "wheel"
+[output]
+report = false
+)" + step;
+}
+
+}  // namespace
+
+// The force was a difference of both sides: one lies outside the table at its ends.
+TEST(NaturalDecks, ForcesAreKnownAtTheEndsOfATable) {
+  const DeckRun run(on_a_table(
+      "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"500 rpm\", "
+      "\"501 rpm\", \"5999 rpm\", \"6000 rpm\"] }\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_FALSE(run.says("not finite")) << run.log;
+  const Columns t = run.csv("u_response.csv");
+  ASSERT_EQ(t.rows.size(), 4u);
+  const std::size_t force = t.column("bearing A force y [N]");
+  // the force of the neighbour within the table, but for the step of speed
+  EXPECT_NEAR(t.rows[0][force], t.rows[1][force], 0.01 * t.rows[1][force]);
+  EXPECT_NEAR(t.rows[3][force], t.rows[2][force], 0.01 * t.rows[2][force]);
+}
+
+// The range begins a thousandth of its end, which no table covers: "the load may lie beyond a limit".
+TEST(NaturalDecks, CriticalSpeedsBeginWhereTablesDo) {
+  const std::string search =
+      "[[step]]\nname = \"c\"\ntype = \"critical_speeds\"\nmax_speed = \"6000 rpm\"\nmotion = "
+      "\"lateral\"\n";
+  const DeckRun run(on_a_table(search));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(
+      run.says("critical speeds below 500 rpm are not looked for: the table of bearing 'A'"))
+      << run.log;
+  EXPECT_FALSE(run.csv("c_undamped.csv").rows.empty());
+  const DeckRun below(on_a_table(search + "min_speed = \"100 rpm\"\n"));
+  EXPECT_EQ(below.exit, 3) << below.log;
+  EXPECT_TRUE(below.says("E22")) << below.log;
+  const DeckRun map(on_a_table(
+      "[[step]]\nname = \"m\"\ntype = \"critical_map\"\nmax_speed = \"6000 rpm\"\nstiffness_min = "
+      "\"1e6 N/m\"\nstiffness_max = \"1e9 N/m\"\npoints = 5\nbearings = [\"A\", \"B\"]\n"));
+  ASSERT_EQ(map.exit, 0) << map.log;
+  EXPECT_TRUE(map.says("critical speeds below 500 rpm are not looked for")) << map.log;
+}
+
+// The line named the largest of the speeds asked for beside a table of larger peaks.
+TEST(NaturalDecks, TheLargestResponseCountsThePeaks) {
+  const DeckRun run(
+      on_a_table("[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { start = \"1000 "
+                 "rpm\", stop = "
+                 "\"6000 rpm\", points = 6, refine = \"no\" }\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns peaks = run.csv("u_peaks.csv");
+  double most = 0;
+  for (const auto& row : peaks.rows)
+    for (std::size_t c = 0; c < peaks.names.size(); ++c)
+      if (peaks.names[c].find("amplitude") != std::string::npos &&
+          peaks.names[c].find("[m]") != std::string::npos)
+        most = std::max(most, row[c]);
+  ASSERT_GT(most, 0.0);
+  EXPECT_NEAR(run.summary("u").at("largest amplitude 0-peak [m]").at("P").number(), most,
+              1e-9 * most);
+}
+
+// From speed to speed an undamped twist was lost, and with it the certificate.
+TEST(NaturalDecks, ATwistThatNothingDampsIsFollowedFromSpeedToSpeed) {
+  const DeckRun run(R"(format = 1
+[[shaft]]
+name = "rotor"
+material = "steel"
+columns = ["length[mm]", "od_l[mm]", "od_r[mm]"]
+rows = [[600, 160, 160], [300, 40, 40]]
+[[disk]]
+at = "900 mm"
+mass = "25 kg"
+Ip = "0.6 kg.m^2"
+Id = "0.35 kg.m^2"
+[[bearing]]
+name = "A"
+at = "0 mm"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "8e7 N/m"
+kzz = "8e7 N/m"
+cyy = "2e4 N.s/m"
+czz = "2e4 N.s/m"
+[[bearing]]
+name = "B"
+at = "600 mm"
+type = "linear"
+kyy = "8e7 N/m"
+kzz = "8e7 N/m"
+cyy = "2e4 N.s/m"
+czz = "2e4 N.s/m"
+[output]
+report = false
+[[step]]
+name = "s"
+type = "stability"
+speed = { values = ["1000 rpm", "1001 rpm", "1002 rpm", "1100 rpm", "3000 rpm"] }
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("certified at 5 speeds")) << run.log;
+  const Columns t = run.csv("s_log_decrement.csv");
+  for (const auto& row : t.rows)
+    EXPECT_NEAR(row[t.column("T1 frequency [Hz]")], 92.1287, 1e-3);
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {
