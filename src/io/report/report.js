@@ -508,7 +508,7 @@
       this.unit = [0, 1, 2].map(unit);
       this.home = [0, 1, 2].map((d) => axes.axis[d].lo);
       const row = document.createElement("div");
-      row.className = "replay";
+      row.className = "replay-bar";
       row.innerHTML = `<input type="range" min="0" max="${this.t.length - 1}" value="${this.moment}" aria-label="time"><output></output>`;
       figure.querySelector("svg").after(row);
       [this.slider, this.output] = row.children;
