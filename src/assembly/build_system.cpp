@@ -56,6 +56,8 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   out.system = a.builder.finalize();
   const std::vector<double> held = out.system.breakpoints();
   out.breakpoints.insert(out.breakpoints.end(), held.begin(), held.end());
+  const std::vector<Pace> paces = out.system.paces();
+  out.paces.insert(out.paces.end(), paces.begin(), paces.end());
   std::sort(out.breakpoints.begin(), out.breakpoints.end());
   out.breakpoints.erase(std::unique(out.breakpoints.begin(), out.breakpoints.end()),
                         out.breakpoints.end());

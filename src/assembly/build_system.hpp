@@ -174,6 +174,7 @@ struct Built {
   std::vector<ElementForce> element_forces;  ///< one an element of the mesh
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors),
                                     ///< sorted: integrator steps land on them
+  std::vector<Pace> paces;          ///< of the same laws: integrator steps keep them
   std::vector<SupportForce> support_forces;  ///< one a bearing of the model, in its order
   std::vector<JointResult> joints;           ///< one a joint of the model, in its order
   std::vector<std::vector<std::size_t>>

@@ -40,7 +40,8 @@ void add_torque(Assembly& a, const model::Drive& d, Index node) {
                                    *start = {time, angle};
                                  }});
   }
-  a.take_breakpoints(k.breakpoints());
+  a.take_breakpoints(k.law.of_time);
+  a.take_breakpoints(k.law.brake);
   a.builder.add(k, {node}, "drives");
   a.built.drive_torques.push_back(
       {d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) {

@@ -20,7 +20,10 @@ struct Assembly {
     built.breakpoints.insert(built.breakpoints.end(), t.begin(), t.end());
   }
   void take_breakpoints(const LawPtr& law) {
-    if (law) take_breakpoints(law->breakpoints());
+    if (!law) return;
+    take_breakpoints(law->breakpoints());
+    const std::vector<Pace> paces = law->paces();
+    built.paces.insert(built.paces.end(), paces.begin(), paces.end());
   }
 };
 

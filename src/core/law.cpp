@@ -32,6 +32,12 @@ void require_interval(double t0, double t1, const char* what) {
     refuse(std::string(what) + ": the end time must be later than the start time", "");
 }
 
+/// A quarter of a period.
+double quarter(double omega) { return omega == 0.0 ? infinity : 0.5 * pi / std::abs(omega); }
+
+/// Parts of a change from one value to another that looks do not pass over.
+constexpr double parts_of_a_change = 20.0;
+
 // Polynomials between knots: piece k, in powers of t - origin, holds from knot[k-1] to knot[k] (the
 // first from -infinity, the last to +infinity).
 class PiecewisePolynomial final : public Law {
@@ -100,6 +106,21 @@ LawPtr make_held(std::vector<double> t, double first, double last,
   return std::make_shared<PiecewisePolynomial>(std::move(t), std::move(pieces));
 }
 
+/// Another law with a pace.
+class Paced final : public Law {
+ public:
+  Paced(LawPtr law, std::vector<Pace> paces) : law_(std::move(law)), paces_(std::move(paces)) {}
+  LawValue at(double t) const override { return law_->at(t); }
+  double integral(double t) const override { return law_->integral(t); }
+  std::vector<double> breakpoints() const override { return law_->breakpoints(); }
+  std::vector<Pace> paces() const override { return paces_; }
+  bool constant() const override { return law_->constant(); }
+
+ private:
+  LawPtr law_;
+  std::vector<Pace> paces_;
+};
+
 class CosineStep final : public Law {
  public:
   CosineStep(double t0, double t1, double f0, double f1)
@@ -118,6 +139,7 @@ class CosineStep final : public Law {
   }
   double integral(double t) const override { return primitive(t) - zero_; }
   std::vector<double> breakpoints() const override { return {t0_, t1_}; }
+  std::vector<Pace> paces() const override { return {{t0_, t1_, (t1_ - t0_) / parts_of_a_change}}; }
 
  private:
   double primitive(double t) const {  // from t0
@@ -143,6 +165,11 @@ class Decaying final : public Law {
   }
   double integral(double t) const override { return primitive(t) - primitive(0.0); }
   std::vector<double> breakpoints() const override { return {t0_}; }
+  std::vector<Pace> paces() const override {
+    constexpr double lives = 14.0;  // decay times: then a millionth is left
+    const double decay = -1.0 / rate_.real();
+    return {{t0_, t0_ + lives * decay, std::min(quarter(rate_.imag()), 0.5 * decay)}};
+  }
 
  private:
   double primitive(double t) const {  // from t0
@@ -168,6 +195,10 @@ class Harmonic final : public Law {
   double integral(double t) const override {
     const double h = 0.5 * omega_ * t, sinc = h == 0.0 ? 1.0 : std::sin(h) / h;
     return t * (mean_ + amplitude_ * sinc * std::cos(h + phase_));
+  }
+  std::vector<Pace> paces() const override {
+    if (amplitude_ == 0.0 || omega_ == 0.0) return {};
+    return {{-infinity, infinity, quarter(omega_)}};
   }
 
  private:
@@ -198,6 +229,16 @@ class Piecewise final : public Law {
           b.push_back(t);
     std::sort(b.begin(), b.end());
     return b;
+  }
+  std::vector<Pace> paces() const override {
+    std::vector<Pace> out;
+    for (std::size_t k = 0; k < laws_.size(); ++k)
+      for (const Pace& p : laws_[k]->paces()) {
+        const double from = k == 0 ? p.from : std::max(p.from, start_[k]),
+                     to = k + 1 == laws_.size() ? p.to : std::min(p.to, start_[k + 1]);
+        if (from < to) out.push_back({from, to, p.step});
+      }
+    return out;
   }
 
  private:
@@ -237,6 +278,13 @@ class Sum final : public Law {
     std::sort(b.begin(), b.end());
     b.erase(std::unique(b.begin(), b.end()), b.end());
     return b;
+  }
+  std::vector<Pace> paces() const override {
+    std::vector<Pace> out;
+    for (const LawPtr& law : laws_)
+      for (const Pace& p : law->paces())
+        out.push_back(p);
+    return out;
   }
   bool constant() const override {
     return std::all_of(laws_.begin(), laws_.end(), [](const LawPtr& l) { return l->constant(); });
@@ -298,13 +346,40 @@ class AngleOfSpeed final : public Law {
     return phi0_ * t + (t < 0.0 ? -s : s);
   }
   std::vector<double> breakpoints() const override { return speed_->breakpoints(); }
+  std::vector<Pace> paces() const override { return speed_->paces(); }
 
  private:
   LawPtr speed_;
   double phi0_;
 };
 
+class Shifted final : public Law {
+ public:
+  Shifted(LawPtr law, std::shared_ptr<const double> by)
+      : law_(std::move(law)),
+        by_(std::move(by)) {}
+  LawValue at(double t) const override {
+    LawValue v = law_->at(t);
+    v.f += *by_;
+    return v;
+  }
+  double integral(double t) const override { return law_->integral(t) + *by_ * t; }
+  std::vector<double> breakpoints() const override { return law_->breakpoints(); }
+  std::vector<Pace> paces() const override { return law_->paces(); }
+
+ private:
+  LawPtr law_;
+  std::shared_ptr<const double> by_;
+};
+
 }  // namespace
+
+double longest_step(const std::vector<Pace>& paces, double t) {
+  double step = infinity;
+  for (const Pace& p : paces)
+    if (t >= p.from && t < p.to) step = std::min(step, p.step);
+  return step;
+}
 
 LawPtr make_constant(double c) { return make_polynomial({c}); }
 
@@ -360,7 +435,9 @@ LawPtr make_smooth_step(double t0, double t1, double f0, double f1) {
   require_interval(t0, t1, "smooth step");
   require_finite({f0, f1}, "smooth step");
   const double T = t1 - t0, a = (f1 - f0) / (T * T * T);
-  return make_held({t0, t1}, f0, f1, {{f0, 0.0, 0.0, 10.0 * a, -15.0 * a / T, 6.0 * a / (T * T)}});
+  return std::make_shared<Paced>(
+      make_held({t0, t1}, f0, f1, {{f0, 0.0, 0.0, 10.0 * a, -15.0 * a / T, 6.0 * a / (T * T)}}),
+      std::vector<Pace>{{t0, t1, T / parts_of_a_change}});
 }
 
 LawPtr make_cosine_step(double t0, double t1, double f0, double f1) {
@@ -389,6 +466,10 @@ LawPtr make_sum(std::vector<LawPtr> laws) { return std::make_shared<Sum>(std::mo
 
 LawPtr make_angle_of_speed(LawPtr speed, double phi0) {
   return std::make_shared<AngleOfSpeed>(std::move(speed), phi0);
+}
+
+LawPtr make_shifted(LawPtr law, std::shared_ptr<const double> by) {
+  return std::make_shared<Shifted>(std::move(law), std::move(by));
 }
 
 }  // namespace whirl

@@ -12,6 +12,11 @@ struct LawValue {
   double ddf = 0.0;  ///< second derivative, 1/s^2
 };
 
+/// Within [from, to) a step of a time integrator longer than this may miss what a law does.
+struct Pace {
+  double from, to, step;  ///< s
+};
+
 class Law {
  public:
   virtual ~Law() = default;
@@ -24,6 +29,10 @@ class Law {
   /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands
   /// a step on each.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// Where steps that are controlled by the motion alone may pass over the law itself: a shock that
+  /// dies away before the next look at it, an oscillation met at one phase. Between breakpoints a
+  /// table is seen as it is.
+  virtual std::vector<Pace> paces() const { return {}; }
   /// The same value at all times, known without asking for any.
   virtual bool constant() const { return false; }
 };
@@ -33,6 +42,12 @@ using LawPtr = std::shared_ptr<const Law>;
 inline std::vector<double> breakpoints_of(const LawPtr& law) {
   return law ? law->breakpoints() : std::vector<double>{};
 }
+
+inline std::vector<Pace> paces_of(const LawPtr& law) {
+  return law ? law->paces() : std::vector<Pace>{};
+}
+/// The longest step from a time on that misses nothing.
+double longest_step(const std::vector<Pace>& paces, double t);
 
 /// There is a law, and it is not constant.
 inline bool varies(const LawPtr& law) { return law && !law->constant(); }
@@ -68,5 +83,7 @@ LawPtr make_sum(std::vector<LawPtr> laws);
 /// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the
 /// acceleration). Its own integral is by quadrature, to round-off.
 LawPtr make_angle_of_speed(LawPtr speed, double phi0);
+/// A law and what is added to its value, which may be set later: f = law + *by.
+LawPtr make_shifted(LawPtr law, std::shared_ptr<const double> by);
 
 }  // namespace whirl

@@ -52,7 +52,8 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   o.dt_max = law.integrator.dt_max;
   o.rho_inf = law.integrator.rho_inf;
   for (double b : job.built.breakpoints)
-    if (b > t0 && b < o.t_end) o.breakpoints.push_back(b);
+    if (b > t0 && b <= o.t_end) o.breakpoints.push_back(b);
+  o.paces = job.built.paces;
   double length = 0.0;
   for (const meshes::Line& l : job.mesh.lines)
     length = std::max(length, l.length);

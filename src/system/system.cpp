@@ -210,6 +210,19 @@ std::vector<double> System::breakpoints() const {
   return out;
 }
 
+std::vector<Pace> System::paces() const {
+  std::vector<Pace> out;
+  const auto take = [&](const LawPtr& law) {
+    for (const Pace& p : paces_of(law))
+      out.push_back(p);
+  };
+  for (const Hold& h : holds_)
+    take(h.law);
+  for (const LawPtr& l : base_)
+    take(l);
+  return out;
+}
+
 bool System::relaxes() const {
   return std::any_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->relaxes(); });
 }

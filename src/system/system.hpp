@@ -121,6 +121,8 @@ class System {
   }
   /// Law breakpoints of holds, base motion and elements, sorted.
   std::vector<double> breakpoints() const;
+  /// Paces of the laws of holds and base motion.
+  std::vector<Pace> paces() const;
 
   State make_state() const;
   Workspace make_workspace() const;

@@ -11,6 +11,7 @@
 // Problem::accept() (whole turns out of phi, change of chart) is called at the *beginning* of the
 // next advance(), so the step just made, its dense output and its end state all stand in one chart.
 #pragma once
+#include <core/law.hpp>
 #include <time/problem.hpp>
 #include <memory>
 #include <optional>
@@ -56,6 +57,7 @@ struct Options {
   double dt_max = infinity;
   std::vector<double>
       breakpoints;  ///< times where data jump: a step lands on each and history is dropped there
+  std::vector<Pace> paces;  ///< adaptive steps keep them
   Scales scales;
   double rho_inf = 0.9;  ///< generalized-alpha: spectral radius at infinite step, 0..1
   int max_newton = 10;   ///< iterations a step

@@ -306,8 +306,8 @@ StepReport Stepper::advance() {
   begin_step();
   const bool fixed = options_.dt_fixed > 0.0;
   if (fixed && (!segment_valid_ || segment_k_ >= segment_count_)) plan_segment();
-  double h_wanted =
-      fixed ? (inside_part_ ? h_next_ : segment_step_) : std::min(h_next_, options_.dt_max);
+  double h_wanted = fixed ? (inside_part_ ? h_next_ : segment_step_)
+                          : std::min({h_next_, options_.dt_max, longest_step(options_.paces, t_)});
   const double dt_min =
       options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
   retrying_ = false;

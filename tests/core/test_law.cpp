@@ -2,7 +2,9 @@
 #include <core/law.hpp>
 #include <core/types.hpp>
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 using namespace whirl;
 
@@ -139,6 +141,39 @@ TEST(Law, BreakpointsAreListedOnce) {
             (std::vector<double>{1, 1.5}));
   EXPECT_TRUE(make_harmonic(0, 1, 1, 0)->breakpoints().empty());
   EXPECT_EQ(make_angle_of_speed(a, 0)->breakpoints(), a->breakpoints());
+}
+
+// In a step that keeps the pace the law moves by no more than four fifths of all it moves.
+TEST(Law, PacesMissNothing) {
+  for (const auto& [name, law] :
+       {Case{"smooth", make_smooth_step(0.2, 1.7, 1, -4)},
+        Case{"cosine", make_cosine_step(0.2, 1.7, 1, -4)},
+        Case{"harmonic", make_harmonic(1, 2, 50, 0.3)},
+        Case{"decaying", make_decaying(0.4, 2, 500, 0.3, 0.01)},
+        Case{"pulse", make_decaying(0.4, 2, 0, 0, 0.01)},
+        Case{"sum", make_sum({make_constant(2), make_decaying(0.4, 2, 500, 0.3, 0.01)})},
+        Case{"piecewise", make_piecewise({0, 0.3}, {make_constant(1), make_harmonic(0, 3, 40, 0)})},
+        Case{"angle", make_angle_of_speed(make_smooth_step(0.2, 1.7, 1, -4), 0.7)}}) {
+    const bool angle = std::string_view(name) == "angle";
+    const auto value = [&](double t) { return angle ? law->at(t).df : law->at(t).f; };
+    double low = infinity, high = -infinity;
+    for (double t = 0.0; t < 2.0; t += 1e-4) {
+      low = std::min(low, value(t));
+      high = std::max(high, value(t));
+    }
+    for (double t = 0.0; t < 2.0; t += 1e-3) {
+      double step = std::min(longest_step(law->paces(), t), 2.0 - t);
+      for (const double b : law->breakpoints())
+        if (b > t) step = std::min(step, b - t);
+      double most = 0.0;
+      for (int k = 0; k < 20; ++k)
+        most = std::max(most, std::abs(value(t + (k + 0.5) / 20 * step) - value(t)));
+      EXPECT_LE(most, 0.8 * (high - low)) << name << " at " << t;
+    }
+  }
+  EXPECT_TRUE(make_table({0, 1, 2}, {0, 3, 0})->paces().empty());
+  EXPECT_EQ(longest_step(make_decaying(0.4, 2, 500, 0.3, 0.01)->paces(), 0.3), infinity);
+  EXPECT_EQ(longest_step(make_decaying(0.4, 2, 500, 0.3, 0.01)->paces(), 0.6), infinity);
 }
 
 TEST(Law, BadInputIsRefused) {

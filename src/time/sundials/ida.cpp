@@ -413,6 +413,10 @@ StepReport Ida::step_to(double stop, bool is_break) {
   const double least =
       options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
   check(IDASetMinStep(ida_, std::min(least, options_.dt_max)), "IDASetMinStep");
+  if (!options_.paces.empty()) {
+    const double longest = std::min(options_.dt_max, longest_step(options_.paces, t0_));
+    check(IDASetMaxStep(ida_, std::isfinite(longest) ? longest : 0.0), "IDASetMaxStep");
+  }
   realtype reached = t0_;
   const double far = std::isfinite(stop) ? stop : t0_ + 1e3 * std::max(1.0, std::abs(t0_));
   const int flag = IDASolve(ida_, far, &reached, y_.handle(), yp_.handle(), IDA_ONE_STEP);
