@@ -148,12 +148,14 @@ struct DriveTorque {
   std::function<double(const NodeAt&, double t, const ReactionAt&)> torque;
 };
 
-/// A speed controller of a drive, whose integral of the speed error begins where begin() was called
-/// last: time, s, and angle of its node, rad, whole turns included.
+/// What a drive counts turns from: the integral of a speed controller, or a prescribed angle, begins
+/// where begin() was called last: time, s, and angle of its node, rad, whole turns included.
 struct Governor {
   std::string drive;
   Index node = 0;
   std::function<void(double time, double angle)> begin;
+  /// Of a prescribed angle, which is that of its law where nothing was in motion before.
+  bool in_motion = false;
 };
 
 /// Spin every node of a line starts with: from a prescribed angle law of the step, else

@@ -110,7 +110,14 @@ void add_loads(Assembly& a) {
             {}, d, who);
         continue;
       }
-      a.builder.hold(node, system::spin_phi, p->angle);
+      // where another drive has turned the shaft before, the angle goes on from there
+      const auto before = std::make_shared<double>(0.0);
+      a.builder.hold(node, system::spin_phi, make_shifted(p->angle, before));
+      a.built.governors.push_back({d.name, node,
+                                   [before, law = p->angle](double time, double angle) {
+                                     *before = angle - law->at(time).f;
+                                   },
+                                   true});
       LineSpin& spin = a.built.spins[d.at.shaft];
       if (!spin.prescribed) spin = {true, p->angle, spin.spin0};
       const Index unknown = 6 * node + system::spin_phi;

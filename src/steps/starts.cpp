@@ -151,9 +151,10 @@ void start_in_mode(const run::Job& job, run::StepState& start, const model::Tran
   start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
 }
 
-void begin_governors(const run::Job& job, run::StepState& start) {
+void begin_governors(const run::Job& job, run::StepState& start, bool in_motion) {
   std::map<std::string, run::StepState::Began> acting;
   for (const assembly::Governor& g : job.built.governors) {
+    if (g.in_motion && !in_motion) continue;
     const auto before = start.governors.find(g.drive);
     const double angle = start.state.total_phi(g.node, job.system().node(g.node).line);
     const run::StepState::Began began = before != start.governors.end()

@@ -11,8 +11,9 @@ void start_in_unbalance_response(const run::Job&, run::StepState& start);
 /// @throws Error (E76) when there is no such mode.
 void start_in_mode(const run::Job&, run::StepState& start, const model::TransientStep&);
 /// Lets the governors of the step begin: where those of the start did that acted before, the others
-/// here, without a jump of their torque.
-void begin_governors(const run::Job&, run::StepState& start);
+/// here, without a jump of their torque. in_motion: the start was left by a transient; prescribed
+/// angles then go on from the angle there is.
+void begin_governors(const run::Job&, run::StepState& start, bool in_motion);
 /// The part of a checkpoint that says where they began.
 void save_governors(OutArchive& out, const run::StepState& start);
 void restore_governors(InArchive& in, run::StepState& start);

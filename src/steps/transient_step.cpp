@@ -108,16 +108,17 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
   const auto speed = job.goes_on_in_motion(step) ? std::nullopt : law.own_speed();
   run::StepState start = other_run ? start_of_other_run(job, law.previous, law.previous_step)
                                    : job.start_of(step, speed);
-  begin_governors(job, start);
+  const bool in_motion = other_run || job.goes_on_in_motion(step);
+  begin_governors(job, start, in_motion);
   if (other_run) return start;
-  if (step.from.empty()) {
-    settle_start(job, start, law);
-    start.governors.clear();  // the equilibrium has angles of its own
-    begin_governors(job, start);
-  }
   using Start = model::TransientStep::Start;
   const bool steady_motion =
-      step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode);
+      !in_motion && (law.start == Start::unbalance_response || law.start == Start::mode);
+  if (step.from.empty() || steady_motion) {
+    settle_start(job, start, law);
+    start.governors.clear();  // the equilibrium has angles of its own
+    begin_governors(job, start, in_motion);
+  }
   if (!steady_motion) run::warn_of_closed_contacts(job, step, "the start", start.state);
   return start;
 }
@@ -243,7 +244,7 @@ void TransientRun::add_own_parts() {
         {run::Part::governors}, [this](OutArchive& a) { save_governors(a, start_); },
         [this](InArchive& a) {
           restore_governors(a, start_);
-          begin_governors(job_, start_);
+          begin_governors(job_, start_, !law_.previous.empty() || job_.goes_on_in_motion(step_));
         });
   parts_.add(
       {run::Part::wall_clock},
