@@ -97,10 +97,13 @@ void add_loads(Assembly& a) {
   }
   std::set<Index> prescribed;
   Index first_drive = -1;
+  bool counts = false;  // that the first drive's shaft turns at the reference speed
   for (const model::Drive& d : a.model.drives) {
     if (!a.acts(d)) continue;
     const Index node = a.mesh.place(d.at).node;
-    if (first_drive < 0) first_drive = node;
+    const bool turns_as_reference = a.model.shafts[d.at.shaft].speed_ratio == 1.0;
+    if (first_drive < 0 || (turns_as_reference && !counts)) first_drive = node;
+    counts = counts || turns_as_reference;
     if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law)) {
       if (!prescribed.insert(node).second) {
         const std::string who = fmt::format("drive '{}'", d.name);
@@ -129,7 +132,8 @@ void add_loads(Assembly& a) {
       add_torque<elements::TorqueAction::joint>(a, d, node);
     }
   }
-  // The speed axis: the first drive's node, else the first node of the first line that turns.
+  // The speed axis: the node of the first drive on a shaft that turns at the reference speed, else
+  // of the first drive, else the first node of the first line that turns.
   a.built.reference = first_drive;
   for (const meshes::Line& line : a.mesh.lines)
     if (a.built.reference < 0 && line.rotating) a.built.reference = line.first_node;

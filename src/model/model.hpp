@@ -573,7 +573,7 @@ struct TransientStep {
   std::optional<double> own_speed() const {
     return speed0_given || speed0 != 0 ? std::optional(speed0) : std::nullopt;
   }
-  double stop_speed = 0;              ///< stop when the reference spin passes this value; 0 = never
+  std::optional<double> stop_speed;   ///< stop when the reference spin passes this value
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;             ///< wall-clock s between checkpoints; 0 = none
   bool linear = false;  ///< small motions about the steadily turning equilibrium: constant matrices

@@ -126,7 +126,7 @@ double largest_ratio(const Model& m) {
 /// Highest spin a transient is known to reach, rad/s; 0: nothing says.
 double top_speed(const Model& m, const Step& step, const TransientStep& law) {
   const double ratio = largest_ratio(m);
-  double top = ratio * std::max(std::abs(law.speed0), std::abs(law.stop_speed));
+  double top = ratio * std::max(std::abs(law.speed0), std::abs(law.stop_speed.value_or(0.0)));
   for (const Shaft& s : m.shafts)
     top = std::max(top, std::abs(s.spin0));
   for (const Drive& d : m.drives) {

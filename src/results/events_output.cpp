@@ -13,9 +13,8 @@ std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
   for (const model::Event& e : job.model.events) {
     analysis::EventLog::Watch w{e.name, {}, e.direction};
     if (e.kind == model::Event::Kind::speed)
-      w.g = [n = job.reference(), x = e.value](const analysis::Snapshot& s) {
-        return s.node(n).spin() - x;
-      };
+      w.g = [n = job.reference(), ratio = job.reference_ratio(),
+             x = e.value](const analysis::Snapshot& s) { return s.node(n).spin() / ratio - x; };
     else
       w.g = [p = point_of(job, *e.at), x = e.value](const analysis::Snapshot& s) {
         return analysis::displacement(s, p).tail<2>().norm() - x;

@@ -56,6 +56,11 @@ void Job::build_for(const model::Step& step) {
   key_ = key;
 }
 
+double Job::reference_ratio() const {
+  const model::Shaft& shaft = model.shafts[at(mesh.nodes[at(reference())].line)];
+  return shaft.speed_ratio != 0.0 ? shaft.speed_ratio : 1.0;
+}
+
 bool Job::goes_on_in_motion(const model::Step& step) const {
   return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) {
     return s.name == step.from && std::holds_alternative<model::TransientStep>(s.law);

@@ -68,6 +68,8 @@ struct Job {
   void hand_over(Job& parent, io::Value& steps);
   const system::System& system() const { return built.system; }
   Index reference() const { return built.reference; }
+  /// speed_ratio of the reference's shaft: its spin is this many times the reference speed.
+  double reference_ratio() const;
   /// Builds the system with the drives of a step (the same one again costs nothing).
   void build_for(const model::Step& step);
   /// The step goes on from the motion of another one, which has its own speed and angles.

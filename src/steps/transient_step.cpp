@@ -71,14 +71,15 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   for (const assembly::JointResult& j : job.built.joints)
     for (const Index angle : j.angles)
       o.scales.limits.push_back({6 * angle, 1.0});
-  if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
+  const double ratio = job.reference_ratio();
+  if (law.stop_speed) t.speed_stops.push_back({job.reference(), ratio * *law.stop_speed});
   if (law.amplitude_limit < infinity)
     for (const auto& [name, p] : results::watched_points(job))
       t.amplitude_stops.push_back({p, law.amplitude_limit, name});
   for (const model::Event& e : job.model.events) {
     if (!e.stop) continue;
     if (e.kind == model::Event::Kind::speed)
-      t.speed_stops.push_back({job.reference(), e.value});
+      t.speed_stops.push_back({job.reference(), ratio * e.value});
     else
       t.amplitude_stops.push_back({results::point_of(job, *e.at), e.value, e.name});
   }

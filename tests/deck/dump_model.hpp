@@ -285,8 +285,8 @@ class ModelDump {
     }
     if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) range(x->speed);
     if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
-      each("transient",
-           std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
+      each("transient", std::array{x->duration, double(x->start), x->speed0,
+                                   x->stop_speed.value_or(0.0), x->amplitude_limit});
       if (const auto& t = x->torques)
         each("torques", std::array{t->concentration, t->yield, t->ultimate, t->thousand,
                                    t->endurance, t->cycles});

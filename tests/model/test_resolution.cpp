@@ -114,7 +114,7 @@ TEST(Resolution, StepsInTimeAndOfEquilibria) {
   expect("initial speed, of the reference: the shaft turns at twice of it", transient, 600, 600);
   transient.stop_speed = 400;
   expect("stop speed", transient, 1200, 1200);
-  transient.stop_speed = 0;
+  transient.stop_speed.reset();
   model::Model m = uniform(transient);
   m.shafts[0].spin0 = -500;
   EXPECT_NEAR(model::resolution_of(m).lateral, 750, 1e-9);  // its own

@@ -508,8 +508,10 @@ void describe(Visitor& v, model::TransientStep& s) {
   s.speed0_given = v.quantity(
       optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"),
       s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
-  v.quantity(beside_motion(optional("stop_speed", "never")), s.stop_speed, "rpm", any,
-             "the run ends when the reference spin passes this value");
+  double stop = 0;
+  if (v.quantity(beside_motion(optional("stop_speed", "never")), stop, "rpm", any,
+                 "the run ends when the reference spin passes this value"))
+    s.stop_speed = stop;
   v.quantity(beside_motion(optional("amplitude_limit", "none")), s.amplitude_limit, "mm", positive,
              "the run ends when a probe exceeds this displacement");
   v.flag(
