@@ -164,6 +164,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_clamps(m, out);
   check_preloads(m, out);
   check_undeformed(m, out);
+  check_beginnings(m, out);
   check_windows(m, out);
   check_effects(m, out);
   return out;

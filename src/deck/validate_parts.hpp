@@ -44,6 +44,8 @@ void check_cavitation(const model::Model& m, Problems& out);
 void check_clamps(const model::Model& m, Problems& out);
 /// Steps linearised about the rotor as drawn.
 void check_undeformed(const model::Model& m, Problems& out);
+/// A step begins where one other motion ended.
+void check_beginnings(const model::Model& m, Problems& out);
 /// Windows of time in which no step runs: nothing would be written.
 void check_windows(const model::Model& m, Problems& out);
 

@@ -269,6 +269,18 @@ void check_clamps(const model::Model& m, Problems& out) {
   }
 }
 
+/// A step begins where one other motion ended.
+void check_beginnings(const model::Model& m, Problems& out) {
+  for (const model::Step& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (t && !t->previous.empty() && !s.from.empty())
+      report(out, "E26",
+             fmt::format("step '{}' cannot begin both from step '{}' and from the run in '{}'",
+                         s.name, s.from, t->previous),
+             "leave out 'from' or 'previous'", s.where);
+  }
+}
+
 /// Windows of time in which no step runs: nothing would be written.
 void check_windows(const model::Model& m, Problems& out) {
   std::map<std::string, double> end;

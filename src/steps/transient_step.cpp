@@ -159,6 +159,27 @@ void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState&
   }
 }
 
+/// Shafts that gears or couplings tie, and that begin as if nothing did.
+void warn_of_pairs(run::Job& job, const model::Step& step, const run::StepState& start) {
+  for (const model::Bearing& b : job.model.bearings) {
+    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
+    if (!pair || !b.to) continue;
+    const auto spin = [&](const model::Location& at) {
+      return start.state.v[6 * job.mesh.place(at).node + system::spin_phi];
+    };
+    const double here = spin(b.at), there = spin(*b.to), tied = pair->speed_ratio * here;
+    if (std::abs(there - tied) <= 1e-3 * std::max(std::abs(there), std::abs(tied))) continue;
+    const auto name = [&](const model::Location& at) { return job.model.shafts[at.shaft].name; };
+    results::warn_of_step(
+        job, step,
+        fmt::format("{} '{}' turns shaft '{}' at {:.6g} times the speed of '{}', but they begin at "
+                    "{:.6g} and {:.6g} rpm: it meets them with a shock; initial_speed, or "
+                    "initial_spin of the shaft that no drive holds, lets them begin together",
+                    pair->noun, b.name, name(*b.to), pair->speed_ratio, name(b.at), to_rpm(there),
+                    to_rpm(here)));
+  }
+}
+
 /// A transient step on its way.
 class TransientRun {
  public:
@@ -228,6 +249,7 @@ void TransientRun::warn_of_start() const {
   if (resumed_) return;
   const bool other_run = !law_.previous.empty();
   if (!step_.from.empty() || other_run) warn_of_jumps(job_, step_, start_);
+  warn_of_pairs(job_, step_, start_);
   if (law_.own_speed() && (job_.goes_on_in_motion(step_) || other_run))
     results::warn_of_step(
         job_, step_,
