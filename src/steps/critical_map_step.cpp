@@ -1,6 +1,7 @@
 // A critical-map step: undamped critical speeds against the stiffness of the supports.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <results/support_coefficients.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
