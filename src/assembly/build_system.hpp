@@ -150,12 +150,11 @@ struct DriveTorque {
 
 /// What a drive counts turns from: the integral of a speed controller, or a prescribed angle, begins
 /// where begin() was called last: time, s, and angle of its node, rad, whole turns included.
-struct Governor {
+struct TurnCount {
   std::string drive;
   Index node = 0;
   std::function<void(double time, double angle)> begin;
-  /// Of a prescribed angle, which is that of its law where nothing was in motion before.
-  bool in_motion = false;
+  LawPtr angle;  ///< that is prescribed; null: of a speed controller
 };
 
 /// Spin every node of a line starts with: from a prescribed angle law of the step, else
@@ -196,7 +195,7 @@ struct Built {
   std::vector<FloatingRingBearing> floating_rings;
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
-  std::vector<Governor> governors;
+  std::vector<TurnCount> turn_counts;
   std::vector<LineSpin> spins;  ///< one a line
   Index reference = 0;  ///< node whose spin is the speed axis: the first drive's, else the first
                         ///< node of the first rotating line

@@ -36,9 +36,12 @@ void add_torque(Assembly& a, const model::Drive& d, Index node) {
   if (k.law.governor) {
     const auto start = std::make_shared<elements::TorqueLaw::Start>();
     k.law.governor->start = start;
-    a.built.governors.push_back({d.name, node, [start](double time, double angle) {
-                                   *start = {time, angle};
-                                 }});
+    a.built.turn_counts.push_back({d.name,
+                                   node,
+                                   [start](double time, double angle) {
+                                     *start = {time, angle};
+                                   },
+                                   {}});
   }
   a.take_breakpoints(k.law.of_time);
   a.take_breakpoints(k.law.brake);
@@ -116,11 +119,11 @@ void add_loads(Assembly& a) {
       // where another drive has turned the shaft before, the angle goes on from there
       const auto before = std::make_shared<double>(0.0);
       a.builder.hold(node, system::spin_phi, make_shifted(p->angle, before));
-      a.built.governors.push_back({d.name, node,
-                                   [before, law = p->angle](double time, double angle) {
-                                     *before = angle - law->at(time).f;
-                                   },
-                                   true});
+      a.built.turn_counts.push_back({d.name, node,
+                                     [before, law = p->angle](double time, double angle) {
+                                       *before = angle - law->at(time).f;
+                                     },
+                                     p->angle});
       LineSpin& spin = a.built.spins[d.at.shaft];
       if (!spin.prescribed) spin = {true, p->angle, spin.spin0};
       const Index unknown = 6 * node + system::spin_phi;

@@ -54,7 +54,7 @@ constexpr PartName part_names[] = {
     {Part::keyphasor, "keyphasor"},
     {Part::spectra, "spectra"},
     {Part::steady_motion, "steady motion"},
-    {Part::governors, "governors"},
+    {Part::drives, "governors"},
     {Part::wall_clock, "wall clock"},
     {Part::limits, "limits"},
     {Part::replay, "replay"},

@@ -31,7 +31,7 @@ enum class Part {
   keyphasor,
   spectra,
   steady_motion,
-  governors,
+  drives,
   wall_clock,
   limits,
   replay,

@@ -25,12 +25,12 @@ namespace whirl::run {
 struct StepState {
   system::State state;
   double speed = 0;  ///< rad/s of the reference line
-  /// Where the integrals of the governors that acted began, by drive: a later step in which they
-  /// act as well goes on with them.
+  /// Where the drives that acted began to count turns: a later step in which a speed controller acts
+  /// as well goes on with its integral.
   struct Began {
     double time = 0, angle = 0;
   };
-  std::map<std::string, Began> governors{};
+  std::map<std::string, Began> drives{};
 };
 
 /// What the torques of a transient did to every element of the shafts, the worse of its two ends.

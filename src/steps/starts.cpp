@@ -151,35 +151,44 @@ void start_in_mode(const run::Job& job, run::StepState& start, const model::Tran
   start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
 }
 
-void begin_governors(const run::Job& job, run::StepState& start, bool in_motion) {
-  std::map<std::string, run::StepState::Began> acting;
-  for (const assembly::Governor& g : job.built.governors) {
-    if (g.in_motion && !in_motion) continue;
-    const auto before = start.governors.find(g.drive);
-    const double angle = start.state.total_phi(g.node, job.system().node(g.node).line);
-    const run::StepState::Began began = before != start.governors.end()
-                                            ? before->second
-                                            : run::StepState::Began{start.state.t, angle};
-    g.begin(began.time, began.angle);
-    acting[g.drive] = began;
-  }
-  start.governors = std::move(acting);
+Beginning beginning_of(const run::Job& job, const model::Step& step,
+                       const model::TransientStep& law) {
+  return !law.previous.empty() || job.goes_on_in_motion(step) ? Beginning::in_motion
+                                                              : Beginning::settled;
 }
 
-void save_governors(OutArchive& out, const run::StepState& start) {
-  out.put_count(start.governors.size());
-  for (const auto& [drive, began] : start.governors) {
+void begin_drives(const run::Job& job, run::StepState& start, Beginning beginning) {
+  std::map<std::string, run::StepState::Began> acting;
+  for (const assembly::TurnCount& count : job.built.turn_counts) {
+    run::StepState::Began began{start.state.t, 0.0};
+    const auto before = start.drives.find(count.drive);
+    const bool goes_on = !count.angle || beginning == Beginning::resumed;
+    if (goes_on && before != start.drives.end())
+      began = before->second;
+    else if (count.angle && beginning == Beginning::settled)
+      began.angle = count.angle->at(began.time).f;
+    else
+      began.angle = start.state.total_phi(count.node, job.system().node(count.node).line);
+    count.begin(began.time, began.angle);
+    acting[count.drive] = began;
+  }
+  start.drives = std::move(acting);
+}
+
+void save_drives(OutArchive& out, const run::StepState& start) {
+  out.put_count(start.drives.size());
+  for (const auto& [drive, began] : start.drives) {
     out.put(drive);
     out.put(began.time);
     out.put(began.angle);
   }
 }
 
-void restore_governors(InArchive& in, run::StepState& start) {
-  start.governors.clear();
+void restore_drives(InArchive& in, run::StepState& start) {
+  start.drives.clear();
   for (std::uint64_t n = in.count(); n > 0; --n) {
     const std::string drive = in.text();
-    run::StepState::Began& began = start.governors[drive];
+    run::StepState::Began& began = start.drives[drive];
     began.time = in.number();
     began.angle = in.number();
   }
@@ -190,9 +199,9 @@ run::StepState start_of_other_run(const run::Job& job, const std::string& folder
   const run::Checkpoint c = run::last_state_of(folder, step);
   run::check_state_fits(c, folder, job.system(), job.model.deck_path);
   run::StepState start{c.state, c.speed, {}};
-  if (const auto governors = c.parts.find({run::Part::governors}); governors != c.parts.end()) {
-    InArchive in(governors->second);
-    restore_governors(in, start);
+  if (const auto drives = c.parts.find({run::Part::drives}); drives != c.parts.end()) {
+    InArchive in(drives->second);
+    restore_drives(in, start);
   }
   return start;
 }

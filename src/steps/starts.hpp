@@ -1,4 +1,4 @@
-// The states transient steps start from: steady responses, modes, other runs; and their governors.
+// The states transient steps start from: steady responses, modes, other runs; and where their drives begin.
 #pragma once
 #include <run/job.hpp>
 
@@ -10,13 +10,19 @@ namespace whirl::steps {
 void start_in_unbalance_response(const run::Job&, run::StepState& start);
 /// @throws Error (E76) when there is no such mode.
 void start_in_mode(const run::Job&, run::StepState& start, const model::TransientStep&);
-/// Lets the governors of the step begin: where those of the start did that acted before, the others
-/// here, without a jump of their torque. in_motion: the start was left by a transient; prescribed
-/// angles then go on from the angle there is.
-void begin_governors(const run::Job&, run::StepState& start, bool in_motion);
+/// How a step begins.
+enum class Beginning {
+  settled,    ///< at rest or in an equilibrium: a prescribed angle is that of its law
+  in_motion,  ///< where another transient ended: a prescribed angle goes on from the one there is
+  resumed     ///< in its midst: as it began
+};
+Beginning beginning_of(const run::Job&, const model::Step&, const model::TransientStep&);
+/// Lets the drives of the step begin to count turns; speed controllers that acted before go on with
+/// their integrals, without a jump of their torque.
+void begin_drives(const run::Job&, run::StepState& start, Beginning);
 /// The part of a checkpoint that says where they began.
-void save_governors(OutArchive& out, const run::StepState& start);
-void restore_governors(InArchive& in, run::StepState& start);
+void save_drives(OutArchive& out, const run::StepState& start);
+void restore_drives(InArchive& in, run::StepState& start);
 /// The last state of a transient step in another results folder.
 run::StepState start_of_other_run(const run::Job&, const std::string& folder,
                                   const std::string& step);

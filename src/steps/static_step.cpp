@@ -376,7 +376,7 @@ void StaticRun::execute() {
     for (const std::string& line : results_.lines)
       std::fputs(("  " + line + "\n").c_str(), stdout);
   }
-  state_.governors.clear();  // an equilibrium: none of them has begun
+  state_.drives.clear();  // an equilibrium: none of them has begun
   job_.states[step_.name] = std::move(state_);
   if (followed_) check_end(step_.name, *followed_);
 }

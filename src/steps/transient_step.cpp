@@ -109,16 +109,16 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
   const auto speed = job.goes_on_in_motion(step) ? std::nullopt : law.own_speed();
   run::StepState start = other_run ? start_of_other_run(job, law.previous, law.previous_step)
                                    : job.start_of(step, speed);
-  const bool in_motion = other_run || job.goes_on_in_motion(step);
-  begin_governors(job, start, in_motion);
+  const Beginning beginning = beginning_of(job, step, law);
+  begin_drives(job, start, beginning);
   if (other_run) return start;
   using Start = model::TransientStep::Start;
-  const bool steady_motion =
-      !in_motion && (law.start == Start::unbalance_response || law.start == Start::mode);
+  const bool steady_motion = beginning == Beginning::settled &&
+                             (law.start == Start::unbalance_response || law.start == Start::mode);
   if (step.from.empty() || steady_motion) {
     settle_start(job, start, law);
-    start.governors.clear();  // the equilibrium has angles of its own
-    begin_governors(job, start, in_motion);
+    start.drives.clear();  // the equilibrium has angles of its own
+    begin_drives(job, start, beginning);
   }
   if (!steady_motion) run::warn_of_closed_contacts(job, step, "the start", start.state);
   return start;
@@ -249,7 +249,10 @@ void TransientRun::warn_of_start() const {
   if (resumed_) return;
   const bool other_run = !law_.previous.empty();
   if (!step_.from.empty() || other_run) warn_of_jumps(job_, step_, start_);
-  warn_of_pairs(job_, step_, start_);
+  using Start = model::TransientStep::Start;
+  const bool given = law_.start == Start::rest || law_.start == Start::static_equilibrium;
+  if (given && beginning_of(job_, step_, law_) == Beginning::settled)
+    warn_of_pairs(job_, step_, start_);
   if (law_.own_speed() && (job_.goes_on_in_motion(step_) || other_run))
     results::warn_of_step(
         job_, step_,
@@ -262,12 +265,12 @@ void TransientRun::add_own_parts() {
     parts_.add(
         {run::Part::steady_motion}, [small](OutArchive& a) { small->save(a); },
         [small](InArchive& a) { small->restore(a); });
-  if (!job_.built.governors.empty())
+  if (!job_.built.turn_counts.empty())
     parts_.add(
-        {run::Part::governors}, [this](OutArchive& a) { save_governors(a, start_); },
+        {run::Part::drives}, [this](OutArchive& a) { save_drives(a, start_); },
         [this](InArchive& a) {
-          restore_governors(a, start_);
-          begin_governors(job_, start_, !law_.previous.empty() || job_.goes_on_in_motion(step_));
+          restore_drives(a, start_);
+          begin_drives(job_, start_, Beginning::resumed);
         });
   parts_.add(
       {run::Part::wall_clock},
@@ -373,7 +376,7 @@ void TransientRun::execute() {
   const interrupt::Shield shield;  // an interrupted step too is written to its end
   for (const auto& output : outputs_)
     output->close();
-  job_.states[step_.name] = {r.end, start_.speed, start_.governors};
+  job_.states[step_.name] = {r.end, start_.speed, start_.drives};
 
   const RunTime time{r.seconds, wall_before_ + watch_.elapsed().wall};
   summarize(r, time);

@@ -137,6 +137,30 @@ TEST(Drives, GoOnFromTheAngleThereIs) {
   }
 }
 
+// A drive of the same name with another law, after another run: its angle is the one there is; and
+// the next step, on the same system, begins anew.
+TEST(Drives, GoOnFromAnotherRunWhateverTheirLaw) {
+  const std::string ramp = drive(
+      "name = \"motor\"\ntype = \"speed\"\nspeed = { type = \"ramp\", time = [\"0 s\", \"1 "
+      "s\"], value = [\"0 rpm\", \"1000 rpm\"] }\n");
+  const DeckRun before(
+      rotor(ramp + transient("t", "duration = \"1 s\"\nstart = \"rest\"\ncheckpoint = \"1 s\"\n")));
+  ASSERT_EQ(before.exit, 0) << before.log;
+  const DeckRun after(rotor(drive("name = \"motor\"\ntype = \"speed\"\nspeed = \"1000 rpm\"\n") +
+                            transient("t", "duration = \"0.1 s\"\nprevious = \"" +
+                                               (before.folder / "r").string() + "\"\n") +
+                            transient("anew", "duration = \"0.1 s\"\nstart = \"rest\"\n")));
+  ASSERT_EQ(after.exit, 0) << after.log;
+  const Columns t = after.csv("t.csv");
+  EXPECT_NEAR(t.rows.front()[t.column("phi [rad]")], 500 * M_PI / 30, 1e-9);
+  const Columns anew = after.csv("anew.csv");
+  EXPECT_EQ(anew.rows.front()[anew.column("phi [rad]")], 0.0);
+  for (const auto& row : anew.rows)
+    EXPECT_LT(row[anew.column("energy.elastic [J]")], 0.1);
+  for (const auto& row : t.rows)
+    EXPECT_LT(row[t.column("energy.elastic [J]")], 0.1);
+}
+
 // "unless 'from' names a transient step": after a static step the start was forgotten.
 TEST(Starts, AreThoseOfTheirKeysAfterAStaticStep) {
   const std::string turning = "[[unbalance]]\nat = \"d\"\namount = \"100 g.mm\"\n" +
