@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace whirl::time {
@@ -51,75 +52,83 @@ class EventLocator {
     }
   }
 
-  /// Sign changes of g(t), zero counted as positive. last: a value of the sign g has at t0; left
-  /// with the sign at the end of what was looked at. found(passage, rising) returns whether to look
-  /// on. Where three neighbouring looks bend towards zero, the turning between them is looked at too:
-  /// a passage there and back is two events.
+  /// Sign changes of g(t), zero counted as positive. last: g at t0; left with g at the end of what was
+  /// looked at. found(passage, rising) returns whether to look on. Where three neighbouring looks
+  /// bend towards zero, the turning between them is looked at too: a passage there and back is two
+  /// events.
   template <class G, class Found>
   void sign_changes(double t0, double t1, double& last, G&& g, Found&& found) const {
-    std::array<double, 2 * most_looks> parts;
-    const std::size_t n = add_turnings(t0, t1, last, g, parts);
-    const EventLocator closer(std::span(parts.data(), n), precision_);
-    closer.search(
-        t0, t1, [&](double t) { return (g(t) < 0.0) != (last < 0.0); },
-        [&](const Passage& passage) {
-          const bool rising = last < 0.0;
-          last = rising ? 1.0 : -1.0;
-          return found(passage, rising);
-        });
+    WHIRL_EXPECTS(looks_.size() <= most_looks);
+    std::array<Look, 2 * most_looks + 1> look;
+    const std::size_t n = look_at(t0, t1, last, g, look);
+    double side = last;  // that the motion is on
+    for (std::size_t k = 1; k < n; ++k) {
+      last = look[k].value;
+      if ((last < 0.0) == (side < 0.0)) continue;
+      const Passage passage = bracket({look[k - 1].time, look[k].time}, t1 - t0,
+                                      [&](double t) { return (g(t) < 0.0) != (side < 0.0); });
+      side = last;
+      if (!found(passage, last >= 0.0)) return;
+    }
   }
 
  private:
   static constexpr std::size_t most_looks = 8;
+  struct Look {
+    double time, value;
+  };
 
-  /// The looks, and between them the turnings of g that reach the other side of zero.
+  /// The beginning, the looks, and between them the turnings of g that reach the other side of zero.
   template <class G>
-  std::size_t add_turnings(double t0, double t1, double last, G&& g,
-                           std::array<double, 2 * most_looks>& parts) const {
-    WHIRL_EXPECTS(looks_.size() <= most_looks);
-    const double side = last < 0.0 ? -1.0 : 1.0;
+  std::size_t look_at(double t0, double t1, double first, G&& g,
+                      std::array<Look, 2 * most_looks + 1>& out) const {
+    const double side = first < 0.0 ? -1.0 : 1.0;
+    const auto distance = [&](double t) { return side * g(t); };
     std::size_t n = 0;
-    // distance from zero on the side the step begins on
-    const auto distance = [&](double part) { return side * g(t0 + (t1 - t0) * part); };
-    double before = 0.0, here = 0.0, at_before = 0.0, at_here = distance(0.0), last_turning = 0.0;
-    for (std::size_t k = 0; k < looks_.size(); ++k) {
-      const double next = looks_[k], at_next = distance(next);
-      const bool above = at_before >= 0.0 && at_here >= 0.0 && at_next >= 0.0;
-      const double turning = k > 0 && above ? turning_below({before, here, next},
-                                                            {at_before, at_here, at_next}, distance)
-                                            : 0.0;
-      if (turning > last_turning) {
-        last_turning = turning;
-        if (turning < here) parts[n - 1] = turning;
-        parts[n++] = std::max(turning, here);
+    out[n++] = {t0, first};
+    Look before{t0, first}, here = before;
+    for (const double part : looks_) {
+      const double t = part == 1.0 ? t1 : t0 + (t1 - t0) * part;
+      const Look next{t, g(t)};
+      std::optional<double> turning;
+      if (before.time < here.time)
+        turning =
+            turning_below({before.time, here.time, next.time},
+                          {side * before.value, side * here.value, side * next.value}, distance);
+      const bool known = n > 1 && side * out[n - 2].value < 0.0;  // from the looks before
+      if (turning && *turning > here.time) {
+        out[n++] = {*turning, g(*turning)};
+      } else if (turning && !known) {
+        out[n - 1] = {*turning, g(*turning)};
+        out[n++] = here;
       }
-      parts[n++] = next;
+      out[n++] = next;
       before = here;
-      at_before = at_here;
       here = next;
-      at_here = at_next;
     }
     return n;
   }
 
-  /// Where a distance between three looks, all above zero, is least and below zero; else 0.
+  /// Where a distance that is not below zero at three looks is so between them.
   template <class F>
-  static double turning_below(std::array<double, 3> x, std::array<double, 3> f, F&& distance) {
+  static std::optional<double> turning_below(std::array<double, 3> x, std::array<double, 3> f,
+                                             F&& distance) {
+    if (*std::min_element(f.begin(), f.end()) < 0.0) return {};
     for (int round = 0; round < 40; ++round) {
       // the parabola through the three
       const double left = (f[1] - f[0]) / (x[1] - x[0]), right = (f[2] - f[1]) / (x[2] - x[1]);
       const double bend = (right - left) / (x[2] - x[0]);
-      if (!(bend > 0.0)) return 0.0;
+      if (!(bend > 0.0)) return {};
       const double least = 0.5 * (x[0] + x[1] - left / bend);
-      if (!(least > x[0] && least < x[2])) return 0.0;
+      if (!(least > x[0] && least < x[2])) return {};
       const double predicted = f[0] + (least - x[0]) * (left + bend * (least - x[1]));
       // three looks see the bottom to a part of their own height above it
       const double lowest = *std::min_element(f.begin(), f.end());
       const double seen = std::max(0.5 * lowest, 0.05 * std::min(f[0], f[2]));
-      if (round == 0 && predicted > seen) return 0.0;
+      if (round == 0 && predicted > seen) return {};
       const double value = distance(least);
       if (value < 0.0) return least;
-      if (std::abs(least - x[1]) <= 1e-9 * (x[2] - x[0])) return 0.0;
+      if (std::abs(least - x[1]) <= 1e-9 * (x[2] - x[0])) return {};
       // the lowest of the four and its neighbours
       const bool left_of = least < x[1], lower = value < f[1];
       const std::size_t replaced = lower ? 1 : left_of ? 0 : 2;
@@ -131,7 +140,7 @@ class EventLocator {
       x[replaced] = least;
       f[replaced] = value;
     }
-    return 0.0;
+    return {};
   }
 
   template <class Moved>

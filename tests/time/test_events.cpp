@@ -106,28 +106,27 @@ TEST(Events, AllSignChangesOfAStepInOrder) {
     for (int k = 1; k < 98; ++k)
       for (const double width : {0.01, 0.001}) {
         const double a = 2.0 + 0.01 * k, b = a + width;
-        last = sign;
+        const auto turns = [=](double t) {
+          return sign * (t - a) * (t - b) * (1.0 + 0.3 * std::sin(3.0 * t));
+        };
+        last = turns(2.0);
         at.clear();
-        locator.sign_changes(
-            2.0, 3.0, last,
-            [=](double t) { return sign * (t - a) * (t - b) * (1.0 + 0.3 * std::sin(3.0 * t)); },
-            [&](const Passage& p, bool) {
-              at.push_back(p.after);
-              return true;
-            });
+        locator.sign_changes(2.0, 3.0, last, turns, [&](const Passage& p, bool) {
+          at.push_back(p.after);
+          return true;
+        });
         ASSERT_EQ(at.size(), 2u) << a;
         EXPECT_NEAR(at[0], a, 1e-11);
         EXPECT_NEAR(at[1], b, 1e-11);
         EXPECT_GT(last * sign, 0.0);
       }
   // what turns above zero, however closely, passes nothing
-  last = 1.0;
-  locator.sign_changes(
-      2.0, 3.0, last, [](double t) { return 1e-9 + (t - 2.37) * (t - 2.37); },
-      [](const Passage&, bool) {
-        ADD_FAILURE() << "no passage";
-        return true;
-      });
+  const auto touches = [](double t) { return 1e-9 + (t - 2.37) * (t - 2.37); };
+  last = touches(2.0);
+  locator.sign_changes(2.0, 3.0, last, touches, [](const Passage&, bool) {
+    ADD_FAILURE() << "no passage";
+    return true;
+  });
 }
 
 // An event exactly at the end of a step belongs to it, not to the next one.

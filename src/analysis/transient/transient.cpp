@@ -176,6 +176,10 @@ class Run {
       o->begin(step_.end());
     for (const SpeedStop& s : options.speed_stops)
       speed_before_.push_back(step_.end().node(s.node).spin() - s.speed);
+    // what begins beyond its limit stops at once
+    constexpr double just_within = -1e-300;
+    for (const AmplitudeStop& s : options.amplitude_stops)
+      amplitude_before_.push_back(std::min(beyond(step_.end(), s), just_within));
     // equal steps are the user's own choice, and the momentum form knows no contacts
     land_on_corners_ =
         corners_.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
@@ -307,6 +311,11 @@ class Run {
     return corner;
   }
 
+  /// m, by which a place is beyond the limit of a stop.
+  static double beyond(const Snapshot& x, const AmplitudeStop& s) {
+    return displacement(x, s.point).tail<2>().norm() - s.limit;
+  }
+
   /// First passage of a stop in the step, or infinity; what stopped is in the result.
   double first_stop() {
     double t_stop = infinity;
@@ -320,12 +329,10 @@ class Run {
         result_.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
       }
     }
-    for (const AmplitudeStop& s : options_.amplitude_stops) {
-      auto f = [&](const Snapshot& x) {
-        return displacement(x, s.point).tail<2>().norm() - s.limit;
-      };
-      double within = -1.0;
-      const double t = crossing(step_, f, within);
+    for (std::size_t i = 0; i < options_.amplitude_stops.size(); ++i) {
+      const AmplitudeStop& s = options_.amplitude_stops[i];
+      auto f = [&](const Snapshot& x) { return beyond(x, s); };
+      const double t = crossing(step_, f, amplitude_before_[i]);
       if (t < t_stop) {
         t_stop = t;
         result_.reason = StopReason::amplitude_limit;
@@ -390,7 +397,7 @@ class Run {
                     last_kept_ = last_checkpoint_;
   StepDense step_;
   Corners corners_;
-  std::vector<double> speed_before_;
+  std::vector<double> speed_before_, amplitude_before_;
   bool land_on_corners_ = false;
   bool passed_ = false;  ///< the step before ended on a corner
   bool stop_ = false;
