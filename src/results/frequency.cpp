@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -288,6 +289,13 @@ io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
            std::string(to_string(m.kind)), std::string(word)});
   }
   return t;
+}
+
+void FrequencyStep::assume(const std::string& said) {
+  summary()["assumed"].push(said);
+  section.text += (section.text.empty() ? "" : "\n\n") + capital(said) + ".\n\n";
+  if (!job.options.quiet)
+    std::fputs(fmt::format("  {}: assumed: {}\n", step.name, said).c_str(), stderr);
 }
 
 void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::string& where) {

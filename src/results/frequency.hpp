@@ -70,6 +70,8 @@ class FrequencyStep {
   /// Puts what is known of a list of modes into the summary and the section; what is missing also
   /// into the terminal and the exit code. where: "at 3000 rpm", or empty.
   void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
+  /// Says something that the step takes for granted: in summary, section and terminal.
+  void assume(const std::string& said);
   /// What the headers of all tables from here on say of their numbers ("frequencies right to
   /// 2e-4"); also in the section's text.
   void claim(std::string text) { claim_ = std::move(text); }

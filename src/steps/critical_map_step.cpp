@@ -182,8 +182,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   analysis::CriticalMapOptions o;
   o.critical.max_speed = law.max_speed;
   const results::TablesBegin tables = results::where_tables_begin(job);
-  const bool begins_later =
-      tables.speed > analysis::lowest_speed(0.0, law.max_speed) && tables.speed < law.max_speed;
+  const bool begins_later = tables.speed > analysis::lowest_speed(0.0, law.max_speed);
   if (begins_later) o.critical.min_speed = tables.speed;
   o.critical.order = law.order;
   o.critical.motion = results::motion_of(law.motion);
@@ -216,12 +215,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
       "shaft stays;"
       " their damping, mass and pedestals are left out.",
       chosen.size(), names);
-  if (begins_later) {
-    s.summary()["assumed"].push(tables.said);
-    s.section.text += " " + results::capital(tables.said) + ".";
-    if (!job.options.quiet)
-      std::fputs(fmt::format("  {}: {}\n", step.name, tables.said).c_str(), stderr);
-  }
+  if (begins_later) s.assume(tables.said);
   if (!rolling.empty())
     s.section.text +=
         fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.",

@@ -45,8 +45,6 @@ class CriticalRun {
 
  private:
   void begin_where_tables_do();
-  /// Into the report and the summary, and to the terminal.
-  void say_assumed(const std::string& text);
   void find(bool damped);
   std::vector<analysis::Critical> solve(double order, bool damped);
   void add_rows(double order, bool damped, const std::vector<analysis::Critical>& list,
@@ -146,23 +144,15 @@ void CriticalRun::look_below() {
       "('min_speed' "
       "begins lower)",
       to_rpm(low), below, below == 1 ? "y lies" : "ies lie");
-  say_assumed(said);
-}
-
-void CriticalRun::say_assumed(const std::string& text) {
-  s_.summary()["assumed"].push(text);
-  s_.section.text += results::capital(text) + ". ";
-  if (!s_.job.options.quiet)
-    std::fputs(fmt::format("  {}: {}\n", s_.step.name, text).c_str(), stderr);
+  s_.assume(said);
 }
 
 void CriticalRun::begin_where_tables_do() {
   if (law_.min_speed > 0) return;
   const results::TablesBegin tables = results::where_tables_begin(s_.job);
-  if (tables.speed <= analysis::lowest_speed(0.0, law_.max_speed) || tables.speed >= law_.max_speed)
-    return;
+  if (tables.speed <= analysis::lowest_speed(0.0, law_.max_speed)) return;
   law_.min_speed = tables.speed;
-  say_assumed(tables.said);
+  s_.assume(tables.said);
 }
 
 void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>& list) {

@@ -370,15 +370,11 @@ void say_opposed_unbalances(results::FrequencyStep& s) {
     for (std::size_t b = 0; b < a; ++b) {
       if (!unbalanced(a) || !unbalanced(b)) continue;
       if (m.shafts[a].speed_ratio != -m.shafts[b].speed_ratio) continue;
-      const std::string said = fmt::format(
+      s.assume(fmt::format(
           "unbalances of shafts '{}' and '{}', which turn against each other at one speed, act "
           "together at the phases given; unless something keeps the shafts in step, they may "
           "meet at any other",
-          m.shafts[b].name, m.shafts[a].name);
-      s.summary()["assumed"].push(said);
-      s.section.text += "\n\n" + results::capital(said) + ".";
-      if (!s.job.options.quiet)
-        std::fputs(fmt::format("  {}: assumed: {}\n", s.step.name, said).c_str(), stderr);
+          m.shafts[b].name, m.shafts[a].name));
     }
 }
 
