@@ -87,10 +87,15 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double start = spin_at_start(m, s, shaft, x->own_speed());
     if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
-  if (const auto* x = std::get_if<model::CriticalStep>(&s.law); x && x->min_speed > 0)
-    return std::pair(std::min(x->min_speed * ratio, x->max_speed * ratio),
-                     std::max(x->min_speed * ratio, x->max_speed * ratio));
-  return {};  // without min_speed, critical speeds are looked for inside the table
+  if (const auto* x = std::get_if<model::CriticalStep>(&s.law)) {
+    // without min_speed the search begins where the tables do
+    const double low = x->min_speed > 0 ? x->min_speed : x->max_speed;
+    return std::pair(std::min(low * ratio, x->max_speed * ratio),
+                     std::max(low * ratio, x->max_speed * ratio));
+  }
+  if (const auto* x = std::get_if<model::CriticalMapStep>(&s.law))
+    return std::pair(x->max_speed * ratio, x->max_speed * ratio);
+  return {};
 }
 
 namespace {

@@ -414,14 +414,23 @@ report = false
 
 // The force was a difference of both sides: one lies outside the table at its ends.
 TEST(NaturalDecks, ForcesAreKnownAtTheEndsOfATable) {
-  const DeckRun run(on_a_table(
+  const std::string deck = on_a_table(
       "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"500 rpm\", "
-      "\"501 rpm\", \"5999 rpm\", \"6000 rpm\"] }\n"));
+      "\"501 rpm\", \"5999 rpm\", \"6000 rpm\"] }\n");
+  const DeckRun run(deck);
   ASSERT_EQ(run.exit, 0) << run.log;
   EXPECT_FALSE(run.says("not finite")) << run.log;
   const Columns t = run.csv("u_response.csv");
   ASSERT_EQ(t.rows.size(), 4u);
   const std::size_t force = t.column("bearing A force y [N]");
+  // as where the same coefficients go on
+  std::string held = deck;
+  held.replace(held.find("type = \"table\"\n"), 0, "extrapolate = \"hold\"\n");
+  const DeckRun beyond(held);
+  ASSERT_EQ(beyond.exit, 0) << beyond.log;
+  const Columns known = beyond.csv("u_response.csv");
+  for (std::size_t row = 0; row < t.rows.size(); ++row)
+    EXPECT_NEAR(t.rows[row][force], known.rows[row][force], 1e-6 * known.rows[row][force]);
   // the force of the neighbour within the table, but for the step of speed
   EXPECT_NEAR(t.rows[0][force], t.rows[1][force], 0.01 * t.rows[1][force]);
   EXPECT_NEAR(t.rows[3][force], t.rows[2][force], 0.01 * t.rows[2][force]);
@@ -446,6 +455,11 @@ TEST(NaturalDecks, CriticalSpeedsBeginWhereTablesDo) {
       "\"1e6 N/m\"\nstiffness_max = \"1e9 N/m\"\npoints = 5\nbearings = [\"A\", \"B\"]\n"));
   ASSERT_EQ(map.exit, 0) << map.log;
   EXPECT_TRUE(map.says("critical speeds below 500 rpm are not looked for")) << map.log;
+  // what ends before the search does is refused, by check too
+  const DeckRun far(
+      on_a_table("[[step]]\nname = \"c\"\ntype = \"critical_speeds\"\nmax_speed = \"8000 rpm\"\n"));
+  EXPECT_EQ(far.exit, 3) << far.log;
+  EXPECT_TRUE(far.says("E22")) << far.log;
 }
 
 // The line named the largest of the speeds asked for beside a table of larger peaks.
