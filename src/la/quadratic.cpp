@@ -381,6 +381,7 @@ void ModeSolver::Impl::solve_from_known(const MCK& matrices) {
   solve(matrices);
   work.factorizations += before.factorizations;
   work.operator_products += before.operator_products;
+  work.searches += before.searches;
 }
 
 const std::vector<Mode>& ModeSolver::solve_to(const MCK& m, double radius) {

@@ -114,6 +114,10 @@ TEST(Orders, ALongChainBetweenClustersCostsWhatAChainCosts) {
     }
   const BlockPattern p(next, pairs);
   EXPECT_LT(products(p, lu::Ordering::best), 0.65 * products(p, lu::Ordering::amd));
+  std::mt19937 rng(5);
+  BlockLu<Complex> solver(p, all_active(p));
+  expect_solves<Complex>(solver, random_matrices(p, 30.0, rng), all_active(p), Complex(0.7, -1.3),
+                         Complex(-0.4, 0.9), Complex(1.1, 0.2));
 }
 
 TEST(Orders, TheBestIsNeverDearerThanMinimumDegree) {

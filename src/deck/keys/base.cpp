@@ -6,8 +6,8 @@ namespace whirl::deck {
 void describe(Visitor& v, model::BaseMotion& b) {
   static constexpr const char* keys[] = {"x", "y", "z"};
   static constexpr const char* docs[] = {
-      "acceleration of the base along the shaft, constant or a law of time; displacements are "
-      "relative to the base",
+      ("acceleration of the base along the shaft, constant or a law of time; displacements are "
+       "relative to the base"),
       "acceleration across, horizontally", "acceleration upwards"};
   for (std::size_t k = 0; k < 3; ++k)
     describe_law(v, optional(keys[k], "0"), b.acceleration[k], "m/s^2", docs[k]);
@@ -40,7 +40,8 @@ void describe(Visitor& v, model::Event& e) {
   e.direction = direction == 0 ? 0 : direction == 1 ? 1 : -1;
   v.flag("stop", e.stop, "the run ends at it");
   const Alternative kinds[] = {
-      {"speed", "the reference spin passes a value",
+      {"speed",
+       "the reference speed, the spin of the reference shaft over its speed_ratio, passes a value",
        [&](Visitor& w) {
          e.kind = model::Event::Kind::speed;
          w.quantity(required("value"), e.value, "rpm", any, "spin");

@@ -510,7 +510,8 @@ void describe(Visitor& v, model::TransientStep& s) {
       s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
   double stop = 0;
   if (v.quantity(beside_motion(optional("stop_speed", "never")), stop, "rpm", any,
-                 "the run ends when the reference spin passes this value"))
+                 "the run ends when the reference speed, the spin of the reference shaft over its "
+                 "speed_ratio, passes this value"))
     s.stop_speed = stop;
   v.quantity(beside_motion(optional("amplitude_limit", "none")), s.amplitude_limit, "mm", positive,
              "the run ends when a probe exceeds this displacement");
