@@ -37,6 +37,10 @@ const model::Model& Reader::model() const { return model_; }
 void Reader::read() {
   in_table("", document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
   settle_steps();
+  // what is not said beside another error is said where there is none
+  if (withheld_ && diagnostics_.errors() == 0)
+    diagnostics_.error(withheld_->code.c_str(), withheld_->spot, withheld_->message,
+                       withheld_->hint, withheld_->entity);
 }
 
 // ---------------------------------------------------------------- keys

@@ -102,6 +102,13 @@ class Reader : public Visitor {
   std::deque<Value> expanded_;      ///< tables that came out of parameters
   std::map<std::pair<std::string, std::string>, units::Factor> factors_;
   std::vector<PendingStep> pending_steps_;
+  /// The first error not said because its cause was.
+  struct Withheld {
+    std::string code;
+    Spot spot;
+    std::string message, hint, entity;
+  };
+  std::optional<Withheld> withheld_;
   bool shafts_bad_ = false;  ///< a shaft was reported: places on shafts are not judged
 };
 

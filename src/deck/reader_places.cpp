@@ -67,15 +67,19 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
     scope().dirty = true;
     return true;
   }
-  const auto unplaced = [&](const auto& list) {  // a disk or bearing whose own place was reported
+  // a disk or bearing whose own place was reported, not the one whose place this is
+  const auto unplaced = [&](const auto& list) {
     return std::any_of(list.begin(), list.end(), [&](const auto& x) {
-      return x.at.text.empty() && v.text.starts_with(x.name);
+      return &x.at != &target && x.at.text.empty() && v.text.starts_with(x.name);
     });
   };
   const bool shafts_bad = shafts_bad_ || unplaced(model_.disks) || unplaced(model_.bearings);
   const Located found = locate(model_, v.text);
   if (!found.at) {
     if (shafts_bad) {
+      if (!withheld_)
+        withheld_ = Withheld{found.code, v.spot, fmt::format("'{}': {}", k.name, found.message),
+                             found.hint, scope().entity};
       scope().dirty = true;
       return true;
     }

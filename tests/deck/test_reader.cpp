@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <random>
 #include "dump_model.hpp"
 
 namespace fs = std::filesystem;
@@ -229,6 +231,36 @@ TEST(Reader, ResolvedDeckSaysTheSame) {
     const auto third = deck::read_deck_text(second.model.resolved, "resolved.toml");
     EXPECT_EQ(second.model.resolved, third.model.resolved) << p;
   }
+}
+
+// A slip of the pen is an error, or a deck that says the same again when it is resolved; nothing
+// is left out without a word.
+TEST(Reader, OneWrongLetterIsAnErrorOrAnotherDeck) {
+  std::mt19937 rng(7);
+  const std::string letters = "0123456789.-+eE_#[]\"'={},*/^: \n\tkmNradHzx";
+  deck::ReadOptions options;
+  options.files_allowed = false;
+  int read_well = 0;
+  for (const auto& p : good_decks()) {
+    std::ifstream file(p);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (int k = 0; k < 100; ++k) {
+      std::string slip = text;
+      const std::size_t at = rng() % slip.size();
+      const char letter = letters[rng() % letters.size()];
+      if (rng() % 2)
+        slip.insert(at, 1, letter);
+      else
+        slip[at] = letter;
+      const auto first = deck::read_deck_text(slip, "deck.toml", options);
+      if (!first.ok()) continue;
+      ++read_well;
+      const auto second = deck::read_deck_text(first.model.resolved, "resolved.toml", options);
+      ASSERT_TRUE(second.ok()) << p << "\n" << second.report() << slip;
+      EXPECT_EQ(ModelDump(first.model).text(), ModelDump(second.model).text()) << slip;
+    }
+  }
+  EXPECT_GT(read_well, 200);
 }
 
 // Each key declares whether motion depends on it.
