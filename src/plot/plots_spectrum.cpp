@@ -60,6 +60,27 @@ struct Waterfall {
   double height = 0, per_y = 1;  ///< of the largest amplitude, rpm; amplitude a unit of the axis
 };
 
+/// Points of a line that are needed for it to stay within the tolerance: one is kept where no straight
+/// line from the last kept passes all since (a door that swings shut).
+std::vector<std::size_t> corners_of(std::span<const double> x, std::span<const double> y,
+                                    double tolerance) {
+  std::vector<std::size_t> kept;
+  if (!x.empty()) kept.push_back(0);
+  double low = -infinity, high = infinity;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    const auto slope = [&](double to) { return (to - y[kept.back()]) / (x[i] - x[kept.back()]); };
+    if (slope(y[i]) < low || slope(y[i]) > high) {
+      kept.push_back(i - 1);
+      low = -infinity;
+      high = infinity;
+    }
+    low = std::max(low, slope(y[i] - tolerance));
+    high = std::min(high, slope(y[i] + tolerance));
+  }
+  if (x.size() > 1) kept.push_back(x.size() - 1);
+  return kept;
+}
+
 Series waterfall_trace(const SpectrumTrace& t, const Waterfall& w) {
   Series s;
   s.baseline = t.speed * rpm;
@@ -68,7 +89,8 @@ Series waterfall_trace(const SpectrumTrace& t, const Waterfall& w) {
   s.fill_to_baseline = true;
   s.style = {0, Dash::solid, 1.0};
   s.trace_label = readable(s.baseline, 5) + " rpm";
-  for (std::size_t i = 0; i < t.frequency.size(); ++i) {
+  const double tolerance = 0.002 * w.height * w.per_y / w.unit.factor;  // a fifth of a pixel
+  for (const std::size_t i : corners_of(t.frequency, t.amplitude, tolerance)) {
     s.x.push_back(t.frequency[i] * hertz);
     s.y.push_back(s.baseline + t.amplitude[i] * w.unit.factor / w.per_y);
   }

@@ -248,7 +248,7 @@ void PathText::put(double x, double y) {
 std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
                     bool increasing, const SvgOptions& options, std::vector<Point>* seen) {
   const bool whole = keep_all || px.size() < 500;
-  PathText text(!keep_all && px.size() >= 200 && !options.standalone, seen);
+  PathText text(!keep_all && px.size() >= 24 && !options.standalone, seen);
   if (whole) {
     for (std::size_t i = 0; i < px.size(); ++i)
       text.put(px[i], py[i]);

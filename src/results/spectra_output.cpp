@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace whirl::results {
 
@@ -45,12 +46,19 @@ class SpectraOutput final : public TransientOutput {
   std::string csv_name(const std::string& probe, const char* what = "spectra") const;
   void write(const analysis::SpectrumBlock& b);
   std::string how_taken() const;
-  void add_ridge(plot::Figure& map, std::size_t probe) const;
+  void add_ridge(plot::Figure& map, std::span<const Trace> traces, std::size_t probe) const;
   bool speed_varies() const;
+  std::vector<std::span<const Trace>> sweeps() const;
+  static std::string sweep_name(const std::vector<std::span<const Trace>>& parts,
+                                std::size_t which);
+  void add_against_speed(std::vector<plot::Figure>& figures, std::span<const Trace> traces,
+                         const std::string& sweep, std::size_t probe) const;
   const Trace& largest_block(std::size_t probe) const;
   plot::Figure full_spectrum(std::size_t probe) const;
-  std::vector<plot::SpectrumTrace> full_traces(std::size_t probe) const;
-  std::vector<plot::SpectrumTrace> traces_of_y(std::size_t probe) const;
+  std::vector<plot::SpectrumTrace> full_traces(std::span<const Trace> traces,
+                                               std::size_t probe) const;
+  std::vector<plot::SpectrumTrace> traces_of_y(std::span<const Trace> traces,
+                                               std::size_t probe) const;
   double factor() const { return plot::factor_of(convention_); }
   double resolution() const { return options_.max_frequency / options_.lines; }  ///< rad/s
   const model::Output& out_;
@@ -236,14 +244,15 @@ std::string SpectraOutput::how_taken() const {
 }
 
 /// The strongest component of each block.
-void SpectraOutput::add_ridge(plot::Figure& map, std::size_t probe) const {
+void SpectraOutput::add_ridge(plot::Figure& map, std::span<const Trace> traces,
+                              std::size_t probe) const {
   plot::Series s;
   s.label = "ridge: strongest component";
   s.style.color = 1;  // seen on dark and bright parts of the map
   s.style.width = 0;
   s.style.marker = plot::Marker::circle;
   s.style.marker_size = 4.5;
-  for (const Trace& t : traces_) {
+  for (const Trace& t : traces) {
     if (!(t.ridge[probe].amplitude > 0)) continue;
     s.x.push_back(to_rpm(std::abs(t.speed)));
     s.y.push_back(to_hz(std::abs(t.ridge[probe].frequency)));
@@ -270,6 +279,74 @@ bool SpectraOutput::speed_varies() const {
   return traces_.size() > 2 && high - low > 0.02 * high;
 }
 
+/// Parts of the run in which the speed rises or falls by more than a fifth of its range: what whirls
+/// on the way up need not on the way down, and would lie on top of it.
+std::vector<std::span<const SpectraOutput::Trace>> SpectraOutput::sweeps() const {
+  const auto speed = [&](std::size_t k) { return std::abs(traces_[k].speed); };
+  double low = infinity, high = -infinity;
+  for (std::size_t k = 0; k < traces_.size(); ++k) {
+    low = std::min(low, speed(k));
+    high = std::max(high, speed(k));
+  }
+  const double turn = 0.2 * (high - low);
+  std::vector<std::size_t> corners{0};
+  int direction = 0;  // not known before the speed has changed by so much
+  std::size_t lowest = 0, highest = 0;
+  for (std::size_t k = 1; k < traces_.size(); ++k) {
+    if (speed(k) < speed(lowest)) lowest = k;
+    if (speed(k) > speed(highest)) highest = k;
+    if (direction >= 0 && speed(k) < speed(highest) - turn) {
+      if (direction > 0) corners.push_back(highest);
+      direction = -1;
+      lowest = k;
+    } else if (direction <= 0 && speed(k) > speed(lowest) + turn) {
+      if (direction < 0) corners.push_back(lowest);
+      direction = 1;
+      highest = k;
+    }
+  }
+  corners.push_back(traces_.size() - 1);
+  std::vector<std::span<const Trace>> parts;
+  for (std::size_t k = 0; k + 1 < corners.size(); ++k)
+    if (corners[k + 1] > corners[k] + 1)  // at least three
+      parts.emplace_back(&traces_[corners[k]], corners[k + 1] - corners[k] + 1);
+  return parts;
+}
+
+/// "rising speed", with a number where there are several; empty where there is one sweep only.
+std::string SpectraOutput::sweep_name(const std::vector<std::span<const Trace>>& parts,
+                                      std::size_t which) {
+  if (parts.size() < 2) return {};
+  const auto rises = [&](std::size_t k) {
+    return std::abs(parts[k].back().speed) > std::abs(parts[k].front().speed);
+  };
+  int number = 0, count = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (rises(k) != rises(which)) continue;
+    ++count;
+    if (k <= which) ++number;
+  }
+  const std::string name = rises(which) ? "rising speed" : "falling speed";
+  return count > 1 ? fmt::format("{} {}", name, number) : name;
+}
+
+void SpectraOutput::add_against_speed(std::vector<plot::Figure>& figures,
+                                      std::span<const Trace> traces, const std::string& sweep,
+                                      std::size_t probe) const {
+  const std::vector<double> orders{0.5, 1.0, 2.0};
+  const std::string id = step_ + "_" + safe_name(probes_[probe]),
+                    place = sweep.empty() ? "" : "_" + safe_name(sweep),
+                    said = sweep.empty() ? "" : ", " + sweep;
+  figures.push_back(plot::plot_waterfall(
+      id + "_waterfall" + place, probes_[probe] + ": full spectra against speed (cascade)" + said,
+      full_traces(traces, probe), "displacement y + iz", "m", convention_, orders));
+  figures.back().caption += how_taken();
+  figures.push_back(plot::plot_spectrogram(
+      id + "_spectrogram" + place, probes_[probe] + ": spectra of y against speed, map" + said,
+      traces_of_y(traces, probe), "displacement y", "m", convention_));
+  add_ridge(figures.back(), traces, probe);
+}
+
 void SpectraOutput::report(TransientEnd& end) {
   if (!out_.report) return;
   io::ReportSection& section = end.section;
@@ -279,20 +356,12 @@ void SpectraOutput::report(TransientEnd& end) {
         spectra_.block_seconds());
     return;
   }
-  const std::vector<double> orders{0.5, 1.0, 2.0};
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     section.figures.push_back(full_spectrum(p));
     if (speed_varies()) {
-      const std::string id = step_ + "_" + safe_name(probes_[p]);
-      const std::vector<plot::SpectrumTrace> traces = traces_of_y(p);
-      section.figures.push_back(plot::plot_waterfall(
-          id + "_waterfall", probes_[p] + ": full spectra against speed (cascade)", full_traces(p),
-          "displacement y + iz", "m", convention_, orders));
-      section.figures.back().caption += how_taken();
-      section.figures.push_back(plot::plot_spectrogram(
-          id + "_spectrogram", probes_[p] + ": spectra of y against speed, map", traces,
-          "displacement y", "m", convention_));
-      add_ridge(section.figures.back(), p);
+      const std::vector<std::span<const Trace>> parts = sweeps();
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        add_against_speed(section.figures, parts[k], sweep_name(parts, k), p);
     }
     if (!out_.csv) continue;
     section.files.emplace_back("spectra of " + probes_[p], csv_name(probes_[p]));
@@ -350,9 +419,10 @@ plot::Figure SpectraOutput::full_spectrum(std::size_t probe) const {
   return f;
 }
 
-std::vector<plot::SpectrumTrace> SpectraOutput::full_traces(std::size_t probe) const {
+std::vector<plot::SpectrumTrace> SpectraOutput::full_traces(std::span<const Trace> of,
+                                                            std::size_t probe) const {
   std::vector<plot::SpectrumTrace> traces;
-  for (const Trace& t : traces_) {
+  for (const Trace& t : of) {
     plot::SpectrumTrace x;
     x.speed = std::abs(t.speed);
     for (std::size_t k = 0; k < t.full[probe].size(); ++k) {
@@ -364,9 +434,10 @@ std::vector<plot::SpectrumTrace> SpectraOutput::full_traces(std::size_t probe) c
   return traces;
 }
 
-std::vector<plot::SpectrumTrace> SpectraOutput::traces_of_y(std::size_t probe) const {
+std::vector<plot::SpectrumTrace> SpectraOutput::traces_of_y(std::span<const Trace> of,
+                                                            std::size_t probe) const {
   std::vector<plot::SpectrumTrace> traces;
-  for (const Trace& t : traces_) {
+  for (const Trace& t : of) {
     plot::SpectrumTrace x;
     x.speed = std::abs(t.speed);
     for (std::size_t k = 0; k < t.y[probe].size(); ++k) {

@@ -60,6 +60,11 @@ max_frequency = "200 Hz"
 lines = 100
 )";
 
+/// The run-up with a part of its text replaced.
+std::string with_other(std::string text, const std::string& old, const std::string& now) {
+  return text.replace(text.find(old), old.size(), now);
+}
+
 }  // namespace
 
 // With the acceleration constant the square of the speed, and the amplitude with it, grows evenly with the
@@ -85,4 +90,48 @@ TEST(FastRunUp, RidgeKeepsFrequencyAndAmplitude) {
   page << std::ifstream(d.folder / "r" / "report.html").rdbuf();
   EXPECT_NE(page.str().find("from samples at equal angles"), std::string::npos);
   EXPECT_NE(page.str().find("ridge: strongest component"), std::string::npos);
+}
+
+// 22.5 Hz, eleven lines, go by within a block: sixteen overlap, and the speed changes by less than a
+// line from one to the next.
+TEST(FastRunUp, SpectraFollowAsCloselyAsTheSpeedChanges) {
+  const DeckRun d(fast_run_up);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns ridge = d.csv("t_P_ridge.csv");
+  ASSERT_GE(ridge.rows.size(), 45u);
+  for (std::size_t k = 1; k < ridge.rows.size(); ++k) {
+    const auto a = ridge.named(ridge.rows[k - 1]), b = ridge.named(ridge.rows[k]);
+    EXPECT_NEAR(b.at("speed [rpm]") - a.at("speed [rpm]"), 2700.0 * 0.5 / 16, 0.1);
+    EXPECT_GT(b.at("amplitude [m]"), a.at("amplitude [m]"));
+  }
+}
+
+// What the run-up shows does not lie under what the run-down shows.
+TEST(FastRunUp, RisesAndFallsAreDrawnApart) {
+  const DeckRun d(
+      with_other(fast_run_up, R"(time = ["0 s", "2 s"], value = ["600 rpm", "6000 rpm"])",
+                 R"(time = ["0 s", "1 s", "2 s"], value = ["600 rpm", "6000 rpm", "600 rpm"])"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  for (const char* figure : {"t_P_waterfall", "t_P_spectrogram"}) {
+    const auto picture = [&](const std::string& what) {
+      return std::filesystem::exists(d.folder / "r" / "plots" / (figure + what + ".svg"));
+    };
+    EXPECT_TRUE(picture("_rising_speed")) << figure;
+    EXPECT_TRUE(picture("_falling_speed")) << figure;
+    EXPECT_FALSE(picture("")) << figure;
+  }
+}
+
+// The base accelerates ever more: the mass goes aside in proportion, 1 mm in the run, three
+// thousandths of it within a block. It is no vibration of low frequency.
+TEST(FastRunUp, ACentreLineThatMovesIsNoVibration) {
+  const DeckRun d(
+      with_other(fast_run_up, "[output.spectra]",
+                 "[base]\ny = { type = \"ramp\", time = [\"0 s\", \"2 s\"], value = [\"0 "
+                 "m/s^2\", \"1e5 m/s^2\"] }\n[output.spectra]"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns lines = d.csv("t_P_spectra.csv");
+  for (const std::vector<double>& row : lines.rows)
+    for (std::size_t k = 100; k <= 104; ++k)  // two lines to each side of 0 Hz
+      EXPECT_LT(row[k], 0.01 * 0.25e-3) << row[0] << " s, line " << k;
 }

@@ -153,20 +153,40 @@ Ridge strongest(const std::vector<double>& full, double resolution) {
   return {line * resolution, rise * value(best)};
 }
 
+namespace {
+
+/// From -1 to 1 along a block.
+double place_in_block(std::size_t k, std::size_t length) {
+  return 2.0 * static_cast<double>(k) / static_cast<double>(length) - 1.0;
+}
+
+}  // namespace
+
+/// The straight line through a block, weighted as the window does: a sag, and a centre line that
+/// moves with the speed. Oscillations of more than some lines have next to no part in it.
+Spectra::Drift Spectra::drift_of(const std::vector<double>& values) const {
+  double weight = 0, sum = 0, moment = 0, square = 0;
+  for (std::size_t k = 0; k < length_; ++k) {
+    const double x = place_in_block(k, length_), w = window_[k];
+    weight += w;
+    sum += w * values[k];
+    moment += w * x * values[k];
+    square += w * x * x;
+  }
+  return {sum / weight, moment / square};  // the window is even in x
+}
+
 void Spectra::spectrum_of(const std::vector<double>& y, const std::vector<double>& z,
                           std::vector<double>& full, std::vector<double>* one_sided_y,
                           std::vector<double>* one_sided_z) {
   const auto lines = static_cast<std::size_t>(options_.lines);
   const double scale = 2.0 / static_cast<double>(length_);  // 1 / sum of the window
-  double mean_y = 0.0, mean_z = 0.0;                        // a sag leaks into the lowest lines
+  const Drift in_y = drift_of(y), in_z = drift_of(z);       // they would leak into the lowest lines
   for (std::size_t k = 0; k < length_; ++k) {
-    mean_y += y[k];
-    mean_z += z[k];
+    const double x = place_in_block(k, length_);
+    work_[k] =
+        window_[k] * Complex(y[k] - in_y.mean - in_y.slope * x, z[k] - in_z.mean - in_z.slope * x);
   }
-  mean_y /= static_cast<double>(length_);
-  mean_z /= static_cast<double>(length_);
-  for (std::size_t k = 0; k < length_; ++k)
-    work_[k] = window_[k] * Complex(y[k] - mean_y, z[k] - mean_z);
   fft(work_);
   for (std::size_t k = 0; k <= lines; ++k) {
     const Complex plus = scale * work_[k], minus = scale * work_[(length_ - k) % length_];
@@ -234,14 +254,27 @@ void Spectra::transform(double t_end) {
       block_.ridge.back() = {sharp.frequency, sharp.amplitude, true};
   }
   sink_(block_);
-  // half overlap: what the window takes from one block it gives to the next
-  const std::size_t half = length_ / 2;
+  keep_all_but(hop());
+}
+
+/// Samples from one block to the next. Half a block, where the speed is steady: what the window
+/// takes from one it gives to the next. Where it changes, as many as it takes to change by a line.
+std::size_t Spectra::hop() const {
+  const double lines = std::abs(block_.change) / block_.resolution;
+  std::size_t blocks = 2;
+  while (static_cast<double>(blocks) < lines && blocks < most_overlapping)
+    blocks *= 2;
+  return std::max<std::size_t>(1, length_ / blocks);
+}
+
+void Spectra::keep_all_but(std::size_t first) {
+  const auto begin = static_cast<std::ptrdiff_t>(first);
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    std::copy(y_[i].begin() + static_cast<std::ptrdiff_t>(half), y_[i].end(), y_[i].begin());
-    std::copy(z_[i].begin() + static_cast<std::ptrdiff_t>(half), z_[i].end(), z_[i].begin());
+    std::copy(y_[i].begin() + begin, y_[i].end(), y_[i].begin());
+    std::copy(z_[i].begin() + begin, z_[i].end(), z_[i].begin());
   }
-  std::copy(phi_.begin() + static_cast<std::ptrdiff_t>(half), phi_.end(), phi_.begin());
-  filled_ = half;
+  std::copy(phi_.begin() + begin, phi_.end(), phi_.begin());
+  filled_ = length_ - first;
 }
 
 void Spectra::step(StepAccess& s) {

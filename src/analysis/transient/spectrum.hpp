@@ -1,5 +1,7 @@
-// Spectra of a long motion, block by block: uniform samples of probes, Hann window, half overlap,
-// complex FFT of y + iz.
+// Spectra of a long motion, block by block: uniform samples of probes, Hann window, complex FFT of
+// y + iz less the straight line through the block. Blocks overlap by half; where the speed changes
+// within a block by several lines, by so much more that it changes by about one from block to block
+// (at most 32 overlap).
 //
 // The two-sided spectrum of z = y + iz separates forward (positive frequencies) from backward whirl
 // (negative ones): a motion r exp(i w t) of radius r gives r at +w. Amplitudes are 0-peak,
@@ -65,6 +67,13 @@ class Spectra final : public Observer {
   void transform(double t_end);
   void find_change(double span);
   void take_equal_angles();
+  struct Drift {
+    double mean = 0, slope = 0; /**< slope: a half block */
+  };
+  Drift drift_of(const std::vector<double>& values) const;
+  std::size_t hop() const;
+  void keep_all_but(std::size_t first);
+  static constexpr std::size_t most_overlapping = 32;
   /// Amplitudes of the samples into what is not null.
   void spectrum_of(const std::vector<double>& y, const std::vector<double>& z,
                    std::vector<double>& full, std::vector<double>* one_sided_y,

@@ -149,20 +149,16 @@
   const box = (name, rows) => ((name ? `<b>${esc(name)}</b>` : "") + rows.replace(/^<br>/, ""));
   const row = (axis, v) => `<br><span>${esc(axis.label)}</span> ${show(v)} ${esc(axis.unit)}`;
 
-  // A map's cells, from its PNG: stored blocks (plot/png.hpp), in as many chunks as the library likes.
-  function cellsOf(image) {
+  // A map's cells, from its PNG: rows without a filter (plot/png.hpp), in as many chunks as the library likes.
+  async function cellsOf(image) {
     const bin = atob(image.getAttribute("href").split(",")[1]);
     const u32 = (i) => ((bin.charCodeAt(i) << 24) | (bin.charCodeAt(i + 1) << 16) | (bin.charCodeAt(i + 2) << 8) | bin.charCodeAt(i + 3)) >>> 0;
-    let stream = "", raw = "";
+    let stream = "";
     for (let i = 8; i < bin.length; i += 12 + u32(i))
       if (bin.substr(i + 4, 4) === "IDAT") stream += bin.substr(i + 8, u32(i));
-    for (let j = 2, last = 0; !last;) {
-      last = stream.charCodeAt(j) & 1;
-      const n = stream.charCodeAt(j + 1) | (stream.charCodeAt(j + 2) << 8);
-      raw += stream.substr(j + 5, n);
-      j += 5 + n;
-    }
-    return raw;
+    const bytes = new Blob([Uint8Array.from(stream, (c) => c.charCodeAt(0))]);
+    const rows = bytes.stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Uint8Array(await new Response(rows).arrayBuffer());
   }
 
   // ---------------------------------------------------------------- axes in a plane
@@ -279,8 +275,12 @@
       const at = (name) => +image.getAttribute(name);
       const ix = Math.floor(((x - at("x")) / at("width")) * nx), iy = Math.floor(((y - at("y")) / at("height")) * ny);
       if (ix < 0 || iy < 0 || ix >= nx || iy >= ny) return null;
-      this.cells ??= cellsOf(image);
-      const f = this.cells.charCodeAt(iy * (nx + 1) + 1 + ix) / 255;
+      if (!this.cells) {
+        this.cells = [];  // until they are there, and in browsers that cannot inflate, there is nothing to show
+        cellsOf(image).then((cells) => { this.cells = cells; }, () => {});
+      }
+      if (!this.cells.length) return null;
+      const f = this.cells[iy * (nx + 1) + 1 + ix] / 255;
       const v = log ? lo * (hi / lo) ** f : lo + f * (hi - lo);
       return { x: p.x, y: p.y, html: box(`${image.dataset.hl} ${show(v, 3)} ${image.dataset.hu}`, row(this.x, this.valueX(p.x)) + row(this.y, this.valueY(p.y))) };
     }
