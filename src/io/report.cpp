@@ -270,7 +270,7 @@ bool turns(const plot::Figure& f) {
                      [](const plot::Axes& a) { return a.kind == plot::AxesKind::space; });
 }
 
-std::string figure_html(const plot::Figure& f, const std::string& id,
+std::string figure_html(const plot::Figure& f, const std::string& id, const std::string& marks,
                         const FigureNumbers& numbers) {
   const auto number = numbers.find(id);
   const std::string title =
@@ -282,7 +282,7 @@ std::string figure_html(const plot::Figure& f, const std::string& id,
        "click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // About a column a px, as in print: twice as many doubled the page.
-  s += plot::render_svg(f, {false, id, 0.9});
+  s += plot::render_svg(f, {false, id, marks, 0.85});
   if (f.replay) s += replay_html(*f.replay, id);
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";
@@ -387,7 +387,7 @@ std::string section_html(const ReportSection& x, const std::string& id,
   if (!x.figures.empty()) {
     s += "<div class=\"figures\">";
     for (std::size_t i = 0; i < x.figures.size(); ++i)
-      s += figure_html(x.figures[i], figure_ids[i], numbers);
+      s += figure_html(x.figures[i], figure_ids[i], id + "f" + std::to_string(i), numbers);
     s += "</div>\n";
   }
   if (!x.files.empty()) {

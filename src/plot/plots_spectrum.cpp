@@ -89,7 +89,7 @@ Series waterfall_trace(const SpectrumTrace& t, const Waterfall& w) {
   s.fill_to_baseline = true;
   s.style = {0, Dash::solid, 1.0};
   s.trace_label = readable(s.baseline, 5) + " rpm";
-  const double tolerance = 0.002 * w.height * w.per_y / w.unit.factor;  // a fifth of a pixel
+  const double tolerance = 0.003 * w.height * w.per_y / w.unit.factor;  // a quarter of a pixel
   for (const std::size_t i : corners_of(t.frequency, t.amplitude, tolerance)) {
     s.x.push_back(t.frequency[i] * hertz);
     s.y.push_back(s.baseline + t.amplitude[i] * w.unit.factor / w.per_y);

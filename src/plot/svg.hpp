@@ -8,7 +8,8 @@ namespace whirl::plot {
 struct SvgOptions {
   bool standalone =
       true;  ///< XML header, white background, light colours; else for inlining in the report
-  std::string id{};  ///< of the `<svg>`, prefix of all ids in it; empty: the figure's name
+  std::string id{};     ///< of the `<svg>`; empty: the figure's name
+  std::string marks{};  ///< prefix of the ids in it, short: every marker repeats it; empty: the id
   double columns_per_px =
       1.0;  ///< decimation keeps first, last, lowest and highest point of each such column
 };

@@ -38,9 +38,11 @@ struct Canvas {
   std::string out;
   const Figure& figure;
   const SvgOptions& options;
-  std::string prefix;  ///< of ids
+  std::string prefix;  ///< id of the picture
   int ids = 0;
-  std::string id() { return prefix + "-" + std::to_string(++ids); }
+  std::string id() {
+    return (options.marks.empty() ? prefix : options.marks) + "-" + std::to_string(++ids);
+  }
   void add(std::string_view s) { out += s; }
   /// name="value" with two decimals.
   void attr(const char* name, double v);

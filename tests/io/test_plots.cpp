@@ -230,7 +230,7 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   ASSERT_EQ(figures().size(), 18u);
   const plot::Figure& f = figures()[GetParam()];
   for (const bool standalone : {true, false}) {
-    const std::string svg = plot::render_svg(f, {standalone, "", 1.0});
+    const std::string svg = plot::render_svg(f, {standalone, "", "", 1.0});
     EXPECT_EQ(xml_fault(svg), "");
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf\""), std::string::npos);
@@ -336,7 +336,7 @@ TEST(Svg, LongCurvesOfTheReportAreTheSameByDifferences) {
   a.series.push_back(s);
   f.axes.push_back(a);
   const auto file = first_curve(plot::render_svg(f));
-  const auto report = first_curve(plot::render_svg(f, {false, "", 1.5}));
+  const auto report = first_curve(plot::render_svg(f, {false, "", "", 1.5}));
   ASSERT_EQ(file.size(), 450u);
   ASSERT_EQ(report.size(), 252u);  // of the level stretch its ends
   EXPECT_NEAR(report[0].first, file[0].first, 0.051);
@@ -360,7 +360,7 @@ TEST(Svg, ACurveThatComesBackIsDrawnAsOneThatGoes) {
   }
   a.series.push_back(s);
   f.axes.push_back(a);
-  EXPECT_LT(plot::render_svg(f, {false, "", 1.5}).size(), 60000u);
+  EXPECT_LT(plot::render_svg(f, {false, "", "", 1.5}).size(), 60000u);
 }
 
 TEST(Clearances, WallsStandAtTheGapsAndShareIsWritten) {
