@@ -242,6 +242,19 @@ std::vector<Point> probe_points(const run::Job& job) {
   return points;
 }
 
+std::string own_shaft(const run::Job& job, const model::Location& at) {
+  const auto line_of = [&](Index node) {
+    return job.mesh.nodes[static_cast<std::size_t>(node)].line;
+  };
+  const Index line = line_of(job.mesh.place(at).node);
+  if (line < 0 || line == line_of(job.reference())) return {};
+  const auto shaft = static_cast<std::size_t>(line);
+  const bool joined = std::any_of(
+      job.model.joints.begin(), job.model.joints.end(),
+      [&](const model::Joint& j) { return j.at.shaft == shaft || (j.to && j.to->shaft == shaft); });
+  return job.mesh.lines[shaft].rotating && !joined ? job.mesh.lines[shaft].name : "";
+}
+
 std::vector<double> probe_senses(const run::Job& job, const run::StepState& start) {
   std::vector<double> ratio = job.steady_rotation_of(start).ratio;
   const Index line = job.mesh.nodes[at(job.reference())].line;

@@ -27,6 +27,9 @@ std::vector<analysis::Point> probe_points(const run::Job& job);
 /// Of each probe: +1 where the shaft there turns as the reference does, -1 the other way, by the
 /// spins at the start of a step (a shaft that does not turn yet: by its speed_ratio).
 std::vector<double> probe_senses(const run::Job& job, const run::StepState& start);
+/// The shaft whose turns count at a place, where it is another than the reference and turns by itself;
+/// empty: the reference's (also on standing parts, and on shafts that a joint ties to others).
+std::string own_shaft(const run::Job& job, const model::Location& at);
 /// Where a transient's peaks are looked for: the probes, or the disks when there are none.
 std::vector<std::pair<std::string, analysis::Point>> watched_points(const run::Job& job);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace whirl::results {
@@ -64,9 +65,7 @@ class HistoryFigures {
         buffer_(buffer),
         rows_(buffer.kept_rows()),
         convention_(plot::amplitude(job.model.output.peak_to_peak)),
-        section_(section) {
-    find_speeds();
-  }
+        section_(section) {}
   void add_speed();
   void add_displacement(const model::Probe& probe);
   void add_path(const model::Probe& probe);
@@ -93,14 +92,23 @@ class HistoryFigures {
   double largest_of(std::size_t channel, std::size_t components) const;
   /// Place of a channel's first component in a kept row.
   std::size_t place(std::size_t channel) const { return 1 + start_[channel]; }
-  void find_speeds();
+  /// How a shaft turns, at the kept rows; empty where the speeds are not recorded.
+  struct Turning {
+    std::string of;  ///< " of hp"; empty: the reference
+    std::vector<double> rpm;
+    std::vector<double> phi;  ///< rad
+    bool speed_varies = false;
+  };
+  const Turning& turning_of(const model::Probe& probe);
+  Turning read_turning(const std::string& shaft) const;
   Radii radii_of(std::size_t channel) const;
-  std::size_t turning_row() const;
-  void add_amplitude(const std::string& probe, const Radii& radii, const plot::DisplayUnit& unit);
-  Range turns_about(std::size_t row) const;
-  double rows_a_turn(const Range& range) const;
+  static std::size_t turning_row(const Turning& turning);
+  void add_amplitude(const std::string& probe, const Radii& radii, const Turning& turning,
+                     const plot::DisplayUnit& unit);
+  Range turns_about(std::size_t row, const Turning& turning) const;
+  static double rows_a_turn(const Range& range, const Turning& turning);
   void add_orbit(const std::string& probe, std::size_t channel, std::size_t largest_row,
-                 const plot::DisplayUnit& unit);
+                 const Turning& turning, const plot::DisplayUnit& unit);
   void add_force(const Measurement& m, std::size_t channel);
   void add(const std::string& name, std::string title, std::vector<plot::Axes> axes,
            double height = 0) {
@@ -115,8 +123,7 @@ class HistoryFigures {
   const std::vector<std::vector<double>>& rows_;
   const plot::Amplitude convention_;
   io::ReportSection& section_;
-  std::vector<double> rpm_;  ///< of the kept rows; empty where the speed is not recorded
-  bool speed_varies_ = false;
+  std::map<std::string, Turning> turnings_;  ///< by shaft
 };
 
 std::optional<std::size_t> HistoryFigures::find(const std::string& name) const {
@@ -140,13 +147,32 @@ double HistoryFigures::largest_of(std::size_t channel, std::size_t components) c
   return size;
 }
 
-void HistoryFigures::find_speeds() {
-  const auto speed = find("speed");
-  if (!speed || rows_.empty()) return;
+const HistoryFigures::Turning& HistoryFigures::turning_of(const model::Probe& probe) {
+  const std::string shaft = own_shaft(job_, probe.at);
+  const auto known = turnings_.find(shaft);
+  return known != turnings_.end() ? known->second
+                                  : turnings_.emplace(shaft, read_turning(shaft)).first->second;
+}
+
+HistoryFigures::Turning HistoryFigures::read_turning(const std::string& shaft) const {
+  Turning t;
+  const auto speed = find(shaft.empty() ? "speed" : "speed " + shaft);
+  if (!speed || rows_.empty()) return t;
+  if (!shaft.empty()) t.of = " of " + shaft;
   for (const auto& r : rows_)
-    rpm_.push_back(r[place(*speed)] * all_[*speed].scale);
-  const auto [low, high] = std::minmax_element(rpm_.begin(), rpm_.end());
-  speed_varies_ = *high - *low > 0.02 * std::max(1.0, largest(rpm_));
+    t.rpm.push_back(r[place(*speed)] * all_[*speed].scale);
+  const auto [low, high] = std::minmax_element(t.rpm.begin(), t.rpm.end());
+  t.speed_varies = *high - *low > 0.02 * std::max(1.0, largest(t.rpm));
+  if (const auto phi = find("phi"); shaft.empty() && phi) {
+    for (const auto& r : rows_)
+      t.phi.push_back(r[place(*phi)]);
+    return t;
+  }
+  t.phi.push_back(0.0);
+  for (std::size_t r = 1; r < rows_.size(); ++r)  // by the trapezoidal rule
+    t.phi.push_back(t.phi.back() + 0.5 * (rows_[r][0] - rows_[r - 1][0]) *
+                                       (rows_[r][place(*speed)] + rows_[r - 1][place(*speed)]));
+  return t;
 }
 
 void HistoryFigures::add_speed() {
@@ -176,8 +202,9 @@ void HistoryFigures::add_displacement(const model::Probe& probe) {
   add(probe.name + "_history", probe.name + ": displacement", std::move(axes));
   if (m.width() != 2) return;
   const Radii radii = radii_of(*channel);
-  if (speed_varies_) add_amplitude(probe.name, radii, unit);
-  add_orbit(probe.name, *channel, radii.largest, unit);
+  const Turning& turning = turning_of(probe);
+  if (turning.speed_varies) add_amplitude(probe.name, radii, turning, unit);
+  add_orbit(probe.name, *channel, radii.largest, turning, unit);
 }
 
 HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel) const {
@@ -191,44 +218,53 @@ HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel) const {
   return radii;
 }
 
-/// Up to it the speed rises: the last row where it stays up.
-std::size_t HistoryFigures::turning_row() const {
-  const auto top = std::max_element(rpm_.begin(), rpm_.end());
-  const bool stays = *top - *std::min_element(top, rpm_.end()) < 1e-3 * *top;
-  return stays ? rpm_.size() - 1 : static_cast<std::size_t>(top - rpm_.begin());
+/// Up to it the speed rises: the last row where it stays up. @pre the speed is recorded.
+std::size_t HistoryFigures::turning_row(const Turning& turning) {
+  std::size_t top = 0;
+  double last = infinity;  // the lowest after it
+  for (std::size_t r = 0; r < turning.rpm.size(); ++r) {
+    const double speed = std::abs(turning.rpm[r]);  // backwards too
+    if (speed > std::abs(turning.rpm[top])) {
+      top = r;
+      last = speed;
+    }
+    last = std::min(last, speed);
+  }
+  const double highest = std::abs(turning.rpm[top]);
+  const bool stays = highest - last < 1e-3 * highest;
+  return stays ? turning.rpm.size() - 1 : top;
 }
 
 void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
-                                   const plot::DisplayUnit& unit) {
+                                   const Turning& turning, const plot::DisplayUnit& unit) {
   plot::Axes a;
-  a.x = plot::Axis("spin", "rpm");
+  a.x = plot::Axis("spin" + turning.of, "rpm");
   a.y = plot::Axis(fmt::format("radius about the start, {}", plot::to_string(convention_)),
                    unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
-  const std::size_t top = turning_row();
+  const std::size_t top = turning_row(turning);
   plot::Series up, down;
   up.label = top + 1 < rows_.size() ? "speed rising" : "";
   down.label = "speed falling";
   up.style.width = down.style.width = 1.0;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     plot::Series& s = r <= top ? up : down;
-    s.x.push_back(rpm_[r]);
+    s.x.push_back(turning.rpm[r]);
     s.y.push_back(plot::factor_of(convention_) * unit.factor * radii.size[r]);
   }
   if (up.x.size() > 1 || down.x.empty()) a.series.push_back(std::move(up));
   if (!down.x.empty()) a.series.push_back(std::move(down));
-  add(probe + "_amplitude", probe + ": orbit radius against spin", {std::move(a)});
+  add(probe + "_amplitude", probe + ": orbit radius against spin" + turning.of, {std::move(a)});
 }
 
 /// Ten turns about a row when the spin is known and the run is long; else the whole path.
-HistoryFigures::Range HistoryFigures::turns_about(std::size_t row) const {
+HistoryFigures::Range HistoryFigures::turns_about(std::size_t row, const Turning& turning) const {
   Range range{0, rows_.size()};
-  const auto turn = find("phi");
-  if (!turn || !speed_varies_) return range;
-  const std::size_t p = place(*turn);
-  const double phi = rows_[row][p];
-  const auto near = [&](std::size_t r) { return std::abs(rows_[r][p] - phi) <= 5.0 * two_pi; };
+  if (turning.phi.empty() || !turning.speed_varies) return range;
+  const auto near = [&](std::size_t r) {
+    return std::abs(turning.phi[r] - turning.phi[row]) <= 5.0 * two_pi;
+  };
   while (range.from < row && !near(range.from))
     ++range.from;
   range.to = row;
@@ -238,16 +274,15 @@ HistoryFigures::Range HistoryFigures::turns_about(std::size_t row) const {
 }
 
 /// Many where the angle is not known.
-double HistoryFigures::rows_a_turn(const Range& range) const {
-  const auto angle = find("phi");
-  if (!angle || range.to < range.from + 2) return infinity;
-  const std::size_t p = place(*angle);
-  const double turns = std::abs(rows_[range.to - 1][p] - rows_[range.from][p]) / two_pi;
+double HistoryFigures::rows_a_turn(const Range& range, const Turning& turning) {
+  if (turning.phi.empty() || range.to < range.from + 2) return infinity;
+  const double turns = std::abs(turning.phi[range.to - 1] - turning.phi[range.from]) / two_pi;
   return turns > 0 ? static_cast<double>(range.to - range.from - 1) / turns : infinity;
 }
 
 void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
-                               std::size_t largest_row, const plot::DisplayUnit& unit) {
+                               std::size_t largest_row, const Turning& turning,
+                               const plot::DisplayUnit& unit) {
   const Measurement& m = all_[channel];
   const std::size_t y = place(channel);
   plot::Axes a;
@@ -256,8 +291,8 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   a.equal_aspect = true;
   plot::Series s;
   s.style.width = 0.8;
-  const Range range = turns_about(largest_row);
-  const double each_turn = rows_a_turn(range);
+  const Range range = turns_about(largest_row, turning);
+  const double each_turn = rows_a_turn(range, turning);
   if (each_turn < 12) {  // straight lines between them would show a path that there is not
     s.style.width = 0;
     s.style.marker = plot::Marker::circle;
@@ -271,7 +306,7 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   const bool part = range.to - range.from < rows_.size();
   add(probe + "_turns",  // "_orbit" is that of the keyphasor
       probe + (part ? fmt::format(": orbit, ten turns about the largest radius ({:.0f} rpm)",
-                                  rpm_[largest_row])
+                                  turning.rpm[largest_row])
                     : ": orbit"),
       {std::move(a)}, 520);
   if (each_turn < 12)

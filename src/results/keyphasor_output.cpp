@@ -5,6 +5,7 @@
 #include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/transient/order_filter.hpp>
 #include <plot/plots.hpp>
+#include <results/channels.hpp>
 #include <results/plot_buffer.hpp>
 #include <results/transient_output.hpp>
 #include <core/text.hpp>
@@ -749,24 +750,19 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
 
 /// Every shaft that turns by itself has its own; lines on a joint with that of the reference, casings
 /// and supports are seen by the reference's.
+Index first_node_of(const run::Job& job, const model::Location& place) {
+  const Index line = job.mesh.nodes[at(job.mesh.place(place).node)].line;
+  return job.mesh.lines[at(line)].first_node;
+}
+
 std::vector<Keyphasor> keyphasors_of(const run::Job& job) {
-  const auto line_of = [&](Index node) { return job.mesh.nodes[at(node)].line; };
-  const Index reference = line_of(job.reference());
-  const auto joined = [&](Index line) {
-    return std::any_of(job.model.joints.begin(), job.model.joints.end(),
-                       [&](const model::Joint& j) {
-                         return j.at.shaft == at(line) || (j.to && j.to->shaft == at(line));
-                       });
-  };
   std::vector<Keyphasor> all{{job.reference(), {}, {}}};
   for (std::size_t p = 0; p < job.model.probes.size(); ++p) {
-    const Index line = line_of(job.mesh.place(job.model.probes[p].at).node);
-    const bool own =
-        line >= 0 && line != reference && job.mesh.lines[at(line)].rotating && !joined(line);
-    const std::string shaft = own ? job.mesh.lines[at(line)].name : "";
+    const model::Location& place = job.model.probes[p].at;
+    const std::string shaft = own_shaft(job, place);
     auto k =
         std::find_if(all.begin(), all.end(), [&](const Keyphasor& x) { return x.shaft == shaft; });
-    if (k == all.end()) k = all.insert(all.end(), {job.mesh.lines[at(line)].first_node, shaft, {}});
+    if (k == all.end()) k = all.insert(all.end(), {first_node_of(job, place), shaft, {}});
     k->probes.push_back(p);
   }
   std::erase_if(all, [](const Keyphasor& k) { return k.probes.empty(); });

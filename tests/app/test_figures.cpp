@@ -150,6 +150,30 @@ TEST(Figures, EveryShaftHasItsKeyphasor) {
   EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "machine.svg"));
 }
 
+// Radii and orbits too: the one runs from 3000 to 3600 rpm, the other, backwards, to -5400 rpm.
+TEST(Figures, RadiiAreDrawnAgainstTheSpinOfTheirShaft) {
+  std::string other = two;
+  other.replace(other.find("\"4500 rpm\""), 10,
+                R"({ type = "ramp", time = ["0 s", "1 s"], value = ["-4500 rpm", "-5400 rpm"] })");
+  std::string deck = lateral_mass(m, "0 m/s^2", springs + other) +
+                     driven("3000 rpm", "duration = \"1 s\"\nstart = \"rest\"\n");
+  deck.replace(deck.rfind("\"3000 rpm\""), 10,
+               R"({ type = "ramp", time = ["0 s", "1 s"], value = ["3000 rpm", "3600 rpm"] })");
+  const std::size_t one = deck.find("[shaft]");
+  deck.replace(one, 7, "[[shaft]]");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const auto picture = [&](const char* name) {
+    return text_of(run.folder / "r" / "plots" / (std::string("t_") + name + ".svg"));
+  };
+  EXPECT_NE(picture("P_amplitude").find("against spin<"), std::string::npos);
+  const std::string radii = picture("Q_amplitude");
+  EXPECT_NE(radii.find("against spin of other<"), std::string::npos);
+  EXPECT_NE(radii.find("5200"), std::string::npos);             // on its axis
+  EXPECT_EQ(radii.find("speed falling"), std::string::npos);    // it rises, backwards
+  EXPECT_NE(picture("Q_turns").find("(-"), std::string::npos);  // rpm, backwards
+}
+
 // The one shakes the other through a spring: of its 1X nothing is left in what the other keyphasor
 // sees, and the vectors of a steady motion stand still.
 TEST(Figures, KeyphasorsLeaveTheOtherShaftOut) {
