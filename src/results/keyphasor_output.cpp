@@ -141,8 +141,11 @@ class KeyphasorOutput final : public TransientOutput {
   void add_synchronous(io::ReportSection& section, std::size_t probe, double size) const;
   void add_bode(io::ReportSection& section, std::size_t probe, double size) const;
   void add_orders(io::ReportSection& section, std::size_t probe, double size) const;
+  std::vector<Vec2> centres(std::size_t probe) const;
   void add_centreline(const TransientEnd& end, std::size_t probe) const;
   std::string file(const char* what) const;
+  std::string shown_order() const { return fmt::format("{}X", out_.tracking.orders[shown_]); }
+  std::string others_than_orders(std::size_t probe) const;
   std::string speed_name() const { return shaft_.empty() ? "speed" : "speed of " + shaft_; }
   void add_peaks(run::Job& job, io::ReportSection& section) const;
   void add_orbits(run::Job& job, io::ReportSection& section) const;
@@ -154,7 +157,8 @@ class KeyphasorOutput final : public TransientOutput {
   std::vector<Tracked> probes_;
   std::vector<double> filtered_;  ///< orders asked for, and 1 and 0 if they are not among them
   std::size_t first_ = 0, zeroth_ = 0;  ///< of filtered_: orders 1 and 0
-  int turns_ = 1;                       ///< of the filter
+  std::size_t shown_ = 0;  ///< of the orders asked for: of Bode plots and peaks, 1 or the first
+  int turns_ = 1;          ///< of the filter
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;
   PlotBuffer rows_;
@@ -221,6 +225,8 @@ KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyph
                      last_speed_ = t.speed();
                      filter_.take(t);
                    }) {
+  const std::size_t one = place_of(out_.tracking.orders, 1.0);
+  shown_ = one < out_.tracking.orders.size() ? one : 0;
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
   content_ = fmt::format("{} filter {} {}", out_.tracking.samples, turns_, shaft_);
@@ -463,11 +469,11 @@ void KeyphasorOutput::add_synchronous(io::ReportSection& section, std::size_t p,
   a.y.include_zero = true;
   const double factor = unit.factor * plot::factor_of(convention_);
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
-    for (const std::size_t what : {std::size_t{0}, per_direction_ - 2}) {
+    for (const std::size_t what : {2 * shown_, per_direction_ - 2}) {
       plot::Series s;
-      s.label = probe.directions[d].shown +
-                (what == 0 ? fmt::format(" {}X", out_.tracking.orders.front()) : " envelope");
-      if (what != 0) {
+      s.label =
+          probe.directions[d].shown + (what == 2 * shown_ ? " " + shown_order() : " envelope");
+      if (what != 2 * shown_) {
         s.style.dash = plot::Dash::dashed;
         s.style.width = 1.1;
       }
@@ -479,6 +485,29 @@ void KeyphasorOutput::add_synchronous(io::ReportSection& section, std::size_t p,
     }
   f.axes.push_back(std::move(a));
   section.figures.push_back(std::move(f));
+}
+
+/// Where most of the motion is at none of the orders: what of it the filter lets through beats in
+/// their amplitudes and phases. Empty where it is not so.
+std::string KeyphasorOutput::others_than_orders(std::size_t p) const {
+  double other = 0, all = 0, speed = 0;
+  for (const auto& r : rows_.kept_rows())
+    for (std::size_t d = 0; d < probes_[p].directions.size(); ++d) {
+      double orders = 0;
+      for (std::size_t k = 0; k < out_.tracking.orders.size(); ++k)
+        orders += r[column(p, d, 2 * k)];
+      const double envelope = r[column(p, d, per_direction_ - 2)];
+      if (!(envelope - orders > other)) continue;
+      other = envelope - orders;
+      all = envelope;
+      speed = r[1];
+    }
+  if (!(other > 0.5 * all) || !(other > 0.1 * largest_envelope(p))) return {};
+  return fmt::format(
+      " At {} rpm most of the motion is of other frequencies (see the spectra): as far as the "
+      "filter lets it through, amplitudes and phases beat; a smaller output.tracking.bandwidth "
+      "lets less through.",
+      readable(to_rpm(speed), 4));
 }
 
 /// Against speed, rising and falling apart.
@@ -500,16 +529,17 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
         e.speed.push_back(rows[r][1]);
         e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]);
         e.phase_lag.push_back(nan);
-        const double amplitude = rows[r][column(p, d, 0)];
+        const double amplitude = rows[r][column(p, d, 2 * shown_)];
         // below a billionth of the largest motion the phase is that of rounding
         c.speed.push_back(rows[r][1]);
         c.amplitude.push_back(amplitude);
-        c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 1)] : nan);
+        c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 2 * shown_ + 1)]
+                                                      : nan);
       }
       curves.push_back(std::move(c));
       envelope.push_back(std::move(e));
     }
-  const std::string order = fmt::format("{}X", out_.tracking.orders.front());
+  const std::string order = shown_order();
   plot::Figure bode = plot::plot_bode(
       id + "_bode",
       probe.name + ": " + order + " amplitude and phase against speed (tracking filter)", curves,
@@ -523,6 +553,7 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   bode.caption = fmt::format("Filter of {} turn{}: half of what is {:.3g} orders away.", turns_,
                              turns_ == 1 ? "" : "s",
                              turns_ == 1 ? 0.5 * out_.tracking.bandwidth : 1.0 / turns_);
+  bode.caption += others_than_orders(p);
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(
       id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention_));
@@ -603,16 +634,30 @@ plot::Series circle_of(double gap, double factor) {
 
 }  // namespace
 
+/// Means of a probe's turns along y and z; empty where its directions do not give them.
+std::vector<Vec2> KeyphasorOutput::centres(std::size_t p) const {
+  const std::vector<Direction>& d = probes_[p].directions;
+  if (d.size() != 2) return {};
+  const Mat2 along{{d[0].c, d[0].s}, {d[1].c, d[1].s}};
+  if (std::abs(along.determinant()) < 1e-3) return {};  // both along one line
+  const Mat2 back = along.inverse();
+  std::vector<Vec2> out;
+  for (const auto& r : rows_.kept_rows())
+    out.push_back(back *
+                  Vec2(r[column(p, 0, per_direction_ - 1)], r[column(p, 1, per_direction_ - 1)]));
+  return out;
+}
+
 /// Where the middle of the orbit goes: what a journal in its film does while the speed changes.
 void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) const {
   const Tracked& probe = probes_[p];
-  if (probe.directions.size() != 2 || probe.directions[0].name != "y") return;
   const auto& rows = rows_.kept_rows();
-  const std::size_t y = column(p, 0, per_direction_ - 1), z = column(p, 1, per_direction_ - 1);
+  const std::vector<Vec2> centre = centres(p);
+  if (centre.empty()) return;
   double path = 0, most = 0;
-  for (const auto& r : rows) {
-    path = std::max(path, std::hypot(r[y] - rows.front()[y], r[z] - rows.front()[z]));
-    most = std::max(most, std::hypot(r[y], r[z]));
+  for (const Vec2& c : centre) {
+    path = std::max(path, (c - centre.front()).norm());
+    most = std::max(most, c.norm());
   }
   const double gap = clearance_at(end.job, probe.name);
   if (!(gap > 0) || !(path > 0.01 * gap)) return;  // elsewhere it is the beat of single turns
@@ -626,17 +671,17 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) con
   plot::Extra speed{speed_name(), "rpm", {}};
   const std::size_t stride = 1 + rows.size() / 1500;
   for (std::size_t r = 0; r < rows.size(); r += stride) {
-    s.x.push_back(unit.factor * rows[r][y]);
-    s.y.push_back(unit.factor * rows[r][z]);
+    s.x.push_back(unit.factor * centre[r].x());
+    s.y.push_back(unit.factor * centre[r].y());
     speed.values.push_back(to_rpm(rows[r][1]));
   }
   s.extra.push_back(std::move(speed));
   std::vector<std::size_t> noted{0, turning_row(rows), rows.size() - 1};
   noted.erase(std::unique(noted.begin(), noted.end()), noted.end());
   for (const std::size_t r : noted)
-    if (r == 0 || std::hypot(rows[r][y] - rows[0][y], rows[r][z] - rows[0][z]) > 0.1 * path)
+    if (r == 0 || (centre[r] - centre[0]).norm() > 0.1 * path)
       a.notes.push_back(
-          {unit.factor * rows[r][y], unit.factor * rows[r][z],
+          {unit.factor * centre[r].x(), unit.factor * centre[r].y(),
            fmt::format("{:.4g} s, {} rpm", rows[r][0], readable(to_rpm(rows[r][1]), 4))});
   a.series.push_back(std::move(s));
   plot::Figure f;
@@ -665,7 +710,7 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
   const auto& rows = rows_.kept_rows();
   if (!speed_changes(rows)) return;
   io::Table t;
-  t.title = fmt::format("Peaks of the {}X response{}", out_.tracking.orders.front(),
+  t.title = fmt::format("Peaks of the {} response{}", shown_order(),
                         shaft_.empty() ? "" : " to shaft " + shaft_);
   t.columns = {{"probe", "-", ""},   {"direction", "-", ""},        {"speed is", "-", ""},
                {"speed", "rpm", ""}, {"amplitude 0-peak", "m", ""}, {"phase lag", "deg", ""},
@@ -677,12 +722,12 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
         const std::size_t from = rising ? 0 : top, to = rising ? top + 1 : rows.size();
         std::vector<double> y;
         for (std::size_t r = from; r < to; ++r)
-          y.push_back(rows[r][column(p, d, 0)]);
+          y.push_back(rows[r][column(p, d, 2 * shown_)]);
         // a fifth of the largest: what is lower is mostly beat, not resonance
         for (const std::size_t k : peaks_of(y, 0.2)) {
           const auto& r = rows[from + k];
           t.add({probes_[p].name, probes_[p].directions[d].name, rising ? "rising" : "falling",
-                 to_rpm(r[1]), y[k], r[column(p, d, 1)] * 180.0 / pi, r[0]});
+                 to_rpm(r[1]), y[k], r[column(p, d, 2 * shown_ + 1)] * 180.0 / pi, r[0]});
         }
       }
   if (t.rows.empty()) return;

@@ -9,7 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
 #include <tuple>
+#include <vector>
 
 using namespace whirl;
 using test::Columns;
@@ -62,6 +66,22 @@ double whirl_in(const Columns& run, double from, double length) {
     if (row[t] >= from && row[t] < from + length)
       sum += std::pow(row[y] - Y / count, 2) + std::pow(row[z] - Z / count, 2);
   return std::sqrt(sum / count);
+}
+
+/// All that stand in a picture.
+std::vector<double> numbers_of(const std::string& picture) {
+  std::vector<double> out;
+  for (const char* c = picture.c_str(); *c != '\0';) {
+    char* end = nullptr;
+    const double x = std::strtod(c, &end);
+    if (end == c) {
+      ++c;
+      continue;
+    }
+    if (std::isfinite(x)) out.push_back(x);
+    c = end;
+  }
+  return out;
 }
 
 /// 2075.4209 rpm by another code's elements, given to 2e-4.
@@ -214,4 +234,47 @@ speed = { start = "1500 rpm", stop = "2000 rpm", points = 6 }
 )"));
   EXPECT_EQ(run.exit, 0) << run.log;
   EXPECT_TRUE(run.says("W02")) << run.log;
+}
+
+// What two probes at 45 degrees see is the same path of the journal; the Bode plot is of 1X wherever
+// that stands among the orders, and says what it is worth beside a whirl.
+TEST(OilWhirlRuns, PathsAndBodePlotsAreThoseOfTheMotion) {
+  std::string deck = test::oil_whirl_rotor(R"([[unbalance]]
+at = "disk1"
+amount = "500 g.mm"
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = { type = "ramp", time = ["0 s", "2 s"], value = ["1500 rpm", "6000 rpm"] }
+[[step]]
+name = "run"
+type = "transient"
+start = "static"
+duration = "2 s"
+[output]
+tracking = { orders = [0.5, 1, 2] }
+)");
+  const auto text = [](const std::filesystem::path& file) {
+    std::ostringstream out;
+    out << std::ifstream(file).rdbuf();
+    return out.str();
+  };
+  const auto of = [&](const DeckRun& run, const char* what) {
+    return text(run.folder / "r" / "plots" / (std::string("run_journal_") + what + ".svg"));
+  };
+  const DeckRun along(deck);
+  ASSERT_EQ(along.exit, 0) << along.log;
+  deck.replace(deck.find("name = \"journal\""), 16,
+               "name = \"journal\"\nangles = [\"45 deg\", \"135 deg\"]");
+  const DeckRun turned(deck);
+  ASSERT_EQ(turned.exit, 0) << turned.log;
+  const std::vector<double> one = numbers_of(of(along, "centreline")),
+                            other = numbers_of(of(turned, "centreline"));
+  ASSERT_GT(one.size(), 500u);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t k = 0; k < one.size(); ++k)
+    ASSERT_NEAR(one[k], other[k], 0.03 + 1e-4 * std::abs(one[k])) << k;
+  EXPECT_NE(of(along, "bode").find("journal: 1X amplitude"), std::string::npos);
+  EXPECT_NE(text(along.folder / "r" / "report.html").find("most of the motion is of other"),
+            std::string::npos);
 }
