@@ -36,13 +36,17 @@ std::string count(std::size_t n, const char* one, const char* many) {
 /// What a run would write, as far as that is known before it.
 std::string size_line(const model::Model& m) {
   const deck::OutputEstimate e = deck::estimate_output(m);
-  if (e.open && e.total() == 0)
-    return "  output: a row at each accepted step, whose number the run finds out\n";
-  if (e.total() == 0) return {};
-  return fmt::format("  output about {}{} (histories {}{}, pictures {})\n",
-                     e.at_most ? "at most " : "", deck::size_text(e.total()),
-                     deck::size_text(e.histories), e.open ? " and a row at each accepted step" : "",
-                     deck::size_text(e.pictures));
+  std::string r;
+  if (e.histories > 0)
+    r += fmt::format("  histories: {} {}{}\n", e.at_most ? "at most" : "about",
+                     deck::size_text(e.histories),
+                     e.open ? " and a row at each accepted step of the others" : "");
+  else if (e.open)
+    r += "  histories: a row at each accepted step, whose number the run finds out\n";
+  if (e.frames > 0)
+    r += fmt::format("  pictures: {} {:.0f} frames, some {}\n", e.fewer_frames ? "up to" : "about",
+                     e.frames, deck::size_text(e.pictures));
+  return r;
 }
 
 std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
@@ -102,6 +106,7 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   }
   const auto e = deck::estimate_output(m);
   v["output_bytes"] = e.total();
+  v["output_frames"] = e.frames;
   return v;
 }
 

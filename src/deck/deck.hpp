@@ -43,6 +43,9 @@ Exit exit_of(const std::vector<Diagnostic>& diagnostics);
 /// windows of time honoured).
 struct OutputEstimate {
   double histories = 0, pictures = 0;
+  double frames = 0;          ///< of the pictures
+  bool fewer_frames = false;  ///< how many shapes or turns there are is for the run to find out:
+                              ///< these are the most, or for peaks a guess
   bool at_most = false;  ///< rows are written inside a window of speed or amplitude only: there may
                          ///< be far fewer
   bool open = false;     ///< a step writes a row at each accepted step: how many is not known, and

@@ -3,6 +3,8 @@
 #include "deck_run.hpp"
 #include "wheel_on_bearings.hpp"
 
+#include <deck/deck.hpp>
+
 namespace {
 
 using whirl::test::DeckRun;
@@ -40,6 +42,32 @@ TEST_P(PicturesOf, AStepThatStandsAlone) {
   for (const fs::directory_entry& e : fs::recursive_directory_iterator(run.folder / "r"))
     pictures += e.path().extension() == ".svg" || e.path().extension() == ".pvd";
   EXPECT_GT(pictures, 0u) << run.log;
+}
+
+// What `check` says of them before the run: no fewer frames than are written, and their bytes within
+// a half.
+TEST_P(PicturesOf, HaveTheSizeThatCheckSays) {
+  const std::string deck = machine + "\"" + GetParam().name + "\"\n" + GetParam().step;
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  double surfaces = 0, bytes = 0;
+  if (fs::exists(run.folder / "r" / "vtk"))
+    for (const fs::directory_entry& e :
+         fs::recursive_directory_iterator(run.folder / "r" / "vtk")) {
+      if (!e.is_regular_file()) continue;
+      bytes += static_cast<double>(e.file_size());
+      surfaces +=
+          e.path().extension() == ".vtp" && e.path().string().find("surface") != std::string::npos;
+    }
+  const auto said = whirl::deck::estimate_output(whirl::deck::read_deck_text(deck).model);
+  EXPECT_LE(surfaces, said.frames);
+  if (!said.fewer_frames) {
+    EXPECT_EQ(surfaces, said.frames);
+  }
+  if (surfaces == 0) return;
+  const double ratio = bytes / surfaces / (said.pictures / said.frames);
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 1.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(

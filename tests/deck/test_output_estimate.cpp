@@ -104,3 +104,30 @@ TEST(OutputEstimate, RowsInsideAWindowOfSpeedMayBeFew) {
   EXPECT_TRUE(deck::estimate_output(d.model).at_most);
   EXPECT_TRUE(deck::check_output(d.model, 1e6).empty());
 }
+
+// Eight turns a second for ten seconds, there and back: as many frames as a turn has.
+TEST(OutputEstimate, FramesByTurnsAreThoseOfTheDrive) {
+  const auto frames = [](const std::string& window) {
+    const auto d = deck::read_deck_text(R"(format = 1
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 300, 40]]
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = { type = "ramp", time = ["0 s", "10 s"], value = ["480 rpm", "-480 rpm"] }
+[[step]]
+type = "transient"
+start = "rest"
+duration = "10 s"
+[[output.vtk]]
+frames_per_revolution = 6
+)" + window);
+    EXPECT_TRUE(d.ok()) << d.report();
+    return deck::estimate_output(d.model);
+  };
+  EXPECT_NEAR(frames("").frames, 40 * 6 + 1, 0.01);
+  EXPECT_FALSE(frames("").fewer_frames);
+  EXPECT_TRUE(frames("window = [\"1 s\", \"2 s\"]\n").fewer_frames);
+}
