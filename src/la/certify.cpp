@@ -125,9 +125,10 @@ void ModeSolver::Impl::extend_to_count() {
 bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
   constexpr Index many = 16;
   constexpr double short_of = 0.8;
-  const double rate = crowd_rate();
-  if (c.unknown <= many || crowded_from < infinity || oscillating_reach * radius < rate)
-    return false;
+  if (c.unknown <= many || crowded_from < infinity) return false;
+  double rate = crowd_rate();
+  if (!(rate < infinity)) rate = counter->crowd_rate(c.unknown);  // none of them is known
+  if (oscillating_reach * radius < rate) return false;
   crowded_from = rate;
   most_reach = short_of * rate;
   return true;

@@ -191,4 +191,21 @@ std::vector<Complex> RootCounter::locate(Index unknown) {
   return out;
 }
 
+double RootCounter::crowd_rate(Index unknown) {
+  WHIRL_EXPECTS(m_ != nullptr && unknown > 0);
+  constexpr double narrow = 0.3;  // of the mean: from 1/beta to 2/beta, most of them at 1/beta
+  if (!follow_curve(counting_surprise)) return infinity;
+  std::vector<double> moments(2, 0.0);
+  for (std::size_t k = 1; k < samples_.size(); ++k)
+    add_moments(samples_[k - 1], samples_[k], moments);
+  const double mean = moments[0] / static_cast<double>(unknown),
+               variance = moments[1] / static_cast<double>(unknown) - mean * mean,
+               spread = std::sqrt(std::max(variance, 0.0));
+  // pairs off the axis take away from the second moment
+  if (!(mean < 0.0) || spread > narrow * -mean ||
+      std::sqrt(std::max(-variance, 0.0)) > narrow * -mean)
+    return infinity;
+  return (-mean - spread) * region_.radius;
+}
+
 }  // namespace whirl::la

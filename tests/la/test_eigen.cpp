@@ -639,6 +639,40 @@ TEST(QuadraticModes, SlowUnknownsHideNoFastOnes) {
     }
 }
 
+// The same with few modes asked for, of a fine mesh: the crowd is in the region that is counted, and no
+// root of it is known. It is cut off; one search from place to place took minutes.
+TEST(QuadraticModes, ACrowdNobodyAskedForIsNotLookedFor) {
+  Shaft s;
+  s.elements = 150;
+  const BlockPattern p(151, chain(151));
+  const Mask a = pinned(p, true);
+  const MCK undamped = shaft_matrices(p, s, 0.0);
+  ModeOptions o;
+  o.count = 4;
+  o.certify = true;
+  const std::vector<Mode> slow = quadratic_modes(undamped, a, o);
+  ASSERT_EQ(slow.size(), 4u);
+  for (const double factor : {0.2, 0.5, 1.0}) {
+    const double beta = factor / slow.back().lambda.imag();  // a half is the damping ratio
+    MCK m = shaft_matrices(p, s, 0.0);
+    for (std::size_t k = 0; k < m.K.value_count(); ++k)
+      m.C.data()[k] += beta * m.K.data()[k];
+    ModeSolver solver(p, a, o);
+    const std::vector<Mode> modes = solver.solve(m);
+    EXPECT_TRUE(solver.certificate().complete()) << factor;
+    std::vector<Complex> oscillating;
+    for (const Mode& mode : modes)
+      if (oscillates(mode.lambda)) oscillating.push_back(mode.lambda);
+    ASSERT_EQ(oscillating.size(), 4u) << factor;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double w = slow[k].lambda.imag(), decay = 0.5 * beta * w * w;
+      const Complex expected(-decay, std::sqrt(w * w - decay * decay));
+      EXPECT_NEAR(std::abs(oscillating[k] - expected), 0.0, 1e-6 * w) << factor << " " << k;
+    }
+    EXPECT_LE(solver.work().searches, 12) << factor;
+  }
+}
+
 // Damping by the stiffness, C = beta K: nothing oscillates faster than 1/beta, and all that is faster
 // crowds about -1/beta. More modes asked for than there are: the list ends, as far as it is certified.
 TEST(QuadraticModes, ACrowdOfDecayingRootsEndsAList) {

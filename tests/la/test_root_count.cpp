@@ -175,3 +175,31 @@ TEST(RootCounter, SpinningShaftsNeedFewFactorizations) {
   ASSERT_EQ(where.size(), 1u);
   EXPECT_LT(std::abs(where[0] - modes[5].lambda), 0.02 * radius);
 }
+
+// Twenty roots about -100 beside a pair nobody knows, or spread over the region: only the first are a
+// crowd, and its rate is below (nearly) all of them.
+TEST(RootCounter, ACrowdIsTold) {
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  std::vector<std::array<Complex, 2>> crowd, spread;
+  for (int k = 0; k < 10; ++k) {
+    crowd.push_back({-100.0 * (1 + 0.2 * u(rng)), -100.0 * (1 + 0.2 * u(rng))});
+    spread.push_back({-250.0 * u(rng), -250.0 * u(rng)});
+  }
+  const CountRegion region{100.0, 300.0};
+  const auto rate_of = [&](const std::vector<std::array<Complex, 2>>& roots) {
+    const Chosen system(roots, rng);
+    RootCounter counter(system.pattern, system.active);
+    const RootCount c = counter.count(system.m, region, {});
+    EXPECT_TRUE(c.certain);
+    return counter.crowd_rate(c.unknown);
+  };
+  const double rate = rate_of(crowd);
+  EXPECT_GT(rate, 80.0);
+  EXPECT_LT(rate, 110.0);
+  crowd.push_back({Complex(-5.0, 60.0), Complex(-5.0, -60.0)});
+  const double beside = rate_of(crowd);
+  EXPECT_GT(beside, 50.0);
+  EXPECT_LT(beside, 110.0);
+  EXPECT_EQ(rate_of(spread), infinity);
+}
