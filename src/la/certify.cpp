@@ -88,16 +88,20 @@ Index ModeSolver::Impl::count_oscillating() const {
                        [](const Pair& p) { return oscillates(p.lambda); });
 }
 
-double ModeSolver::Impl::crowd_rate() const {
+double ModeSolver::Impl::crowd_among(const std::vector<Pair>& pairs, std::ptrdiff_t crowd) {
   constexpr double round = 0.05;
-  constexpr std::ptrdiff_t crowd = 6;
   std::vector<double> rates;
-  for (const Pair& p : known)
+  for (const Pair& p : pairs)
     if (!oscillates(p.lambda) && p.lambda.real() < 0.0) rates.push_back(std::abs(p.lambda));
   std::sort(rates.begin(), rates.end());
   for (auto first = rates.begin(); rates.end() - first >= crowd; ++first)
     if (first[crowd - 1] < (1.0 + round) * *first) return *first;
   return infinity;
+}
+
+double ModeSolver::Impl::crowd_rate() const {
+  constexpr std::ptrdiff_t crowd = 6;
+  return crowd_among(known, crowd);
 }
 
 void ModeSolver::Impl::extend_to_count() {
@@ -184,7 +188,9 @@ void ModeSolver::Impl::certify() {
   if (!counter) counter.emplace(pattern, active);
   const std::size_t before = known.size();
   double radius = count_radius();
-  for (int round = 0; round < 6; ++round) {
+  constexpr int rounds = 10;
+  constexpr double less_reach = 0.7;
+  for (int round = 0; round < rounds; ++round) {
     drop_unproved();
     const CountRegion region{radius, std::min(oscillating_reach * radius, most_reach)};
     const RootCount c = counter->count(*m, region, known_roots());
@@ -194,7 +200,10 @@ void ModeSolver::Impl::certify() {
     certificate.counted = c.certain;
     certificate.missing = c.certain ? std::abs(c.unknown) : 0;
     if (!c.certain) {  // a root on the curve itself
-      radius *= 1.023;
+      if (c.crossed.real() < -0.5 * region.reach && region.reach > 0.1 * radius)
+        most_reach = less_reach * region.reach;  // or a crowd of them
+      else
+        radius *= 1.023;
       continue;
     }
     if (c.unknown <= 0) break;

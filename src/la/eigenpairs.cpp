@@ -240,10 +240,11 @@ void Eigenpairs::separate_close() {
   std::vector<Pair*> group;
   std::vector<std::size_t> rest;
   std::vector<bool> done(all.size(), false);
+  constexpr std::size_t most = 32;  // more are a crowd of decaying roots, which nobody looks at
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (done[i] || all[i].rigid) continue;
     group.assign(1, &all[i]);
-    for (std::size_t j = i + 1; j < all.size(); ++j)
+    for (std::size_t j = i + 1; j < all.size() && group.size() < most; ++j)
       if (!done[j] && !all[j].rigid &&
           std::abs(all[j].lambda - all[i].lambda) < 1e-4 * std::abs(all[i].lambda)) {
         group.push_back(&all[j]);

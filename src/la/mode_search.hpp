@@ -66,11 +66,14 @@ struct ModeSolver::Impl : Eigenpairs {
   /// 1/s: where known decaying roots crowd, as they do at 1/beta with damping by the stiffness, beyond
   /// which nothing oscillates then; infinite: nowhere.
   double crowd_rate() const;
+  /// The same of any pairs; crowd: how many make one.
+  static double crowd_among(const std::vector<Pair>& pairs, std::ptrdiff_t crowd);
   /// Cuts the region to be counted short of such a crowd where many of its roots are unknown: to find
   /// it whole costs much and says nothing. False: there is none, or it is cut off already.
   bool avoid_crowd(const RootCount& c, double radius);
   double crowded_from = infinity;  ///< rad/s: rate of the crowd that the region is cut short of
   double most_reach = infinity;    ///< 1/s: of such a region
+  double crowd_met = infinity;     ///< 1/s: where the searches met one; they go no further
   /// All searches that lead to something new.
   void search_all();
   /// Pairs counted on the way may have turned out to be real: the search goes on until as many

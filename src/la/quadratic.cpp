@@ -101,13 +101,18 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
   // Of many modes some hundred at a time: the dense part of a search grows with the cube.
   constexpr Index most = 256;
   const Index lacking = std::min(missing(), most);
-  const bool growing = lacking > 0;
-  const double radius = growing ? opt.max_frequency : wanted_radius();
+  // Short of a crowd of decaying roots: beyond it (next to) nothing oscillates, and what does is
+  // found by the count.
+  constexpr double short_of = 0.98;
+  const bool growing = lacking > 0 && !(crowd_met < infinity);
+  const double radius =
+      growing ? opt.max_frequency : std::min(wanted_radius(), short_of * crowd_met);
   if (growing) {
     k.inject();
     k.inject();  // two vectors: the pairs of isotropic rotors come out together
   }
   Index next_look = growing ? std::max<Index>(12, 4 * std::max<Index>(lacking, 1) + 4) : 8;
+  constexpr std::ptrdiff_t crowd = 24;
   const auto op = operation<Scalar>();
   while (true) {
     bool exhausted = false;
@@ -117,12 +122,14 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
     }
     if (k.processed() == 0) return false;
     Harvest h = harvest(k, exhausted, radius);
-    const bool enough = growing && opt.count > 0 && h.counted >= lacking && lacking > 0;
-    if (exhausted || enough || h.all) {
+    const bool enough = growing && opt.count > 0 && h.counted >= lacking;
+    const bool crowded = growing && opt.certify && crowd_among(h.found, crowd) < infinity;
+    if (exhausted || enough || crowded || h.all) {
       if (h.found.empty()) return false;
       take(h.found, true);
       sort_known();
       separate_close();
+      if (growing && opt.certify) crowd_met = crowd_among(known, crowd);
       for (const Pair& p : h.found)
         deflated.push_back(std::move(h.vectors[at(p.from)]));
       return !(exhausted && k.locked() == 0);
@@ -313,6 +320,7 @@ void ModeSolver::Impl::solve(const MCK& matrices) {
   result.clear();
   deflated.clear();
   certificate = {};
+  crowd_met = infinity;
   if (n == 0 || (first_order && !damped)) {
     known.clear();
     return;

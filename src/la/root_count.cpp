@@ -94,6 +94,7 @@ bool RootCounter::sample(double t, Sample& out) {
 
 bool RootCounter::settle(const Sample& a, const Sample& b, int depth) {
   Sample middle;
+  unsettled_ = a.s;
   if (static_cast<Index>(samples_.size()) > most_arc_samples || !sample(0.5 * (a.t + b.t), middle))
     return false;
   // d log f/dt at the three, the integrals of the parabola through them, and what is left of the
@@ -149,6 +150,7 @@ bool RootCounter::follow_curve(double surprise) {
   const double stations[] = {0.0, 0.6, 1.0, 1.4, 2.0, 3.0};
   for (const double t : stations) {
     Sample next;
+    unsettled_ = point(t);
     if (!sample(t, next)) return false;
     if (samples_.empty()) {
       samples_.push_back(next);
@@ -171,7 +173,10 @@ RootCount RootCounter::count(const MCK& m, const CountRegion& region,
   RootCount out;
   const bool settled = follow_curve(counting_surprise);
   out.factorizations = factorizations_;
-  if (!settled) return out;
+  if (!settled) {
+    out.crossed = unsettled_;
+    return out;
+  }
   // f is real on the real axis: what is no whole number is no count.
   const double turns = (samples_.back().log_f.imag() - samples_.front().log_f.imag()) / pi;
   out.unknown = static_cast<Index>(std::lround(turns));

@@ -30,6 +30,7 @@ struct RootCount {
   bool certain = false;  ///< the samples settle the argument
   Index unknown = 0;  ///< roots inside that are not among the known ones; a conjugate pair is two
   Index factorizations = 0;
+  Complex crossed = 0.0;  ///< where the curve did not settle: beside a root, or in a crowd of them
 };
 
 class RootCounter {
@@ -76,6 +77,7 @@ class RootCounter {
   std::vector<Complex> known_;
   std::vector<Sample> samples_;
   double surprise_ = 0.0;
+  Complex unsettled_ = 0.0;  ///< where the last curve stopped
   Index factorizations_ = 0;
 };
 
