@@ -16,7 +16,7 @@ largest = 45_000  # bytes of a picture
 # example: figure (of the folder plots), table, column, row (number or "last"), what the number is
 SHOWN = {
     "01_paper_rotor": ("precession_disk_synchronous", "precession_peaks", "amplitude 0-peak [m]", 0, "largest displacement"),
-    "02_run_up": ("run_up_and_down_stage2_spectrogram", "run_up_and_down_peaks", "amplitude 0-peak [m]", 0, "largest amplitude"),
+    "02_run_up": ("run_up_and_down_stage2_spectrogram_rising_speed", "run_up_and_down_peaks", "amplitude 0-peak [m]", 0, "largest amplitude"),
     "03_rotating_shaft_benchmark": ("passage_disk_amplitude", "passage_peaks", "amplitude 0-peak [m]", 0, "largest amplitude, exact 0.269760"),
     "04_torque_run_up": ("run_up_disk_amplitude", "run_up_peaks", "amplitude 0-peak [m]", 0, "largest amplitude, exact 1.6911e-3"),
     "05_campbell_nelson_mcvaugh": ("campbell_campbell", "critical_speeds_undamped", "speed [rpm]", 0, "first critical speed"),
@@ -46,7 +46,7 @@ SHOWN = {
     "34_tolerances": ("unbalance_disk_2_bode", "criticals_undamped", "speed [rpm]", 0, "first critical speed as drawn"),
     "35_magnetic_bearings": ("margins_curves", "margins_sensitivity", "largest sensitivity [-]", 0, "largest sensitivity"),
     "36_api_lateral": ("lateral_minimum_clearance_map_critical_map", "lateral_minimum_clearance_modes_unbalance", "critical speed [rpm]", 0, "first critical speed, least clearance"),
-    "37_turbocharger_floating_rings": ("run_compressor_spectrogram", "onset_onset", "whirl frequency [Hz]", 0, "frequency of the whirl at its onset"),
+    "37_turbocharger_floating_rings": ("run_compressor_spectrogram_rising_speed", "onset_onset", "whirl frequency [Hz]", 0, "frequency of the whirl at its onset"),
     "38_cracked_rotor": ("steady_wheel_multiples", "steady_peaks", "speed [rpm]", 0, "first peak of the response"),
     "39_hot_tilting_pads": ("measured_films_1", "measured_films", "hottest face [degC]", 1, "hottest pad, 76.5 measured"),
     "41_synchronous_start": ("start_torques", "torsional_compliance", "value [-]", "last", "share of the life that 5000 starts and ten short circuits use up"),
