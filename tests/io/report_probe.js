@@ -1,5 +1,6 @@
 // Uses the report as a reader would and leaves "ok", or what went wrong, in <pre id="probe">. Expected numbers come from gallery.hpp.
-(() => {
+// When the pictures in it are there.
+window.addEventListener("load", () => {
   const wrong = [...window.faults];
   const check = (ok, what) => { if (!ok) wrong.push(what); };
   const svg = (id) => document.getElementById(id);
@@ -99,4 +100,4 @@
   out.id = "probe";
   out.textContent = wrong.length ? wrong.join("\n") : "ok";
   document.body.append(out);
-})();
+});

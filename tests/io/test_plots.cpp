@@ -163,7 +163,7 @@ std::uint32_t big_endian(const std::string& s, std::size_t at) {
   return v;
 }
 
-/// Cells as the report's script takes them (report.js, cellsOf): rows without a filter, deflated.
+/// The rows of a picture: without a filter, deflated.
 std::string inflated_rows(const std::string& png, std::size_t size) {
   std::string stream, rows(size + 1, '\1');
   for (std::size_t i = 8; i < png.size(); i += 12 + big_endian(png, i))
@@ -177,7 +177,7 @@ std::string inflated_rows(const std::string& png, std::size_t size) {
   return rows;
 }
 
-TEST(Png, CellsAreReadBackByLibraryAndScript) {
+TEST(Png, CellsAreReadBack) {
   constexpr std::size_t width = 700, height = 100;
   std::vector<std::uint8_t> cells(width * height);
   for (std::size_t i = 0; i < cells.size(); ++i)

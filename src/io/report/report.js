@@ -149,16 +149,17 @@
   const box = (name, rows) => ((name ? `<b>${esc(name)}</b>` : "") + rows.replace(/^<br>/, ""));
   const row = (axis, v) => `<br><span>${esc(axis.label)}</span> ${show(v)} ${esc(axis.unit)}`;
 
-  // A map's cells, from its PNG: rows without a filter (plot/png.hpp), in as many chunks as the library likes.
-  async function cellsOf(image) {
-    const bin = atob(image.getAttribute("href").split(",")[1]);
-    const u32 = (i) => ((bin.charCodeAt(i) << 24) | (bin.charCodeAt(i + 1) << 16) | (bin.charCodeAt(i + 2) << 8) | bin.charCodeAt(i + 3)) >>> 0;
-    let stream = "";
-    for (let i = 8; i < bin.length; i += 12 + u32(i))
-      if (bin.substr(i + 4, 4) === "IDAT") stream += bin.substr(i + 8, u32(i));
-    const bytes = new Blob([Uint8Array.from(stream, (c) => c.charCodeAt(0))]);
-    const rows = bytes.stream().pipeThrough(new DecompressionStream("deflate"));
-    return new Uint8Array(await new Response(rows).arrayBuffer());
+  // Indices into the colours of a map, cell by cell, as the browser has drawn its PNG.
+  function cellsOf(image, nx, ny) {
+    const bin = atob(image.getAttribute("href").split(",")[1]), from = bin.indexOf("PLTE") + 4, index = new Map();
+    for (let k = 255; k >= 0; --k) index.set([0, 1, 2].map((c) => bin.charCodeAt(from + 3 * k + c)).join(), k);
+    const canvas = Object.assign(document.createElement("canvas"), { width: nx, height: ny });
+    const g = canvas.getContext("2d");
+    g.imageSmoothingEnabled = false;
+    g.drawImage(image, 0, 0, nx, ny);
+    const rgba = g.getImageData(0, 0, nx, ny).data;
+    if (!rgba[3]) return null;  // not drawn yet
+    return Uint8Array.from({ length: nx * ny }, (_, k) => index.get(rgba.slice(4 * k, 4 * k + 3).join()) ?? 0);
   }
 
   // ---------------------------------------------------------------- axes in a plane
@@ -275,12 +276,9 @@
       const at = (name) => +image.getAttribute(name);
       const ix = Math.floor(((x - at("x")) / at("width")) * nx), iy = Math.floor(((y - at("y")) / at("height")) * ny);
       if (ix < 0 || iy < 0 || ix >= nx || iy >= ny) return null;
-      if (!this.cells) {
-        this.cells = [];  // until they are there, and in browsers that cannot inflate, there is nothing to show
-        cellsOf(image).then((cells) => { this.cells = cells; }, () => {});
-      }
-      if (!this.cells.length) return null;
-      const f = this.cells[iy * (nx + 1) + 1 + ix] / 255;
+      this.cells ??= cellsOf(image, nx, ny);
+      if (!this.cells) return null;
+      const f = this.cells[iy * nx + ix] / 255;
       const v = log ? lo * (hi / lo) ** f : lo + f * (hi - lo);
       return { x: p.x, y: p.y, html: box(`${image.dataset.hl} ${show(v, 3)} ${image.dataset.hu}`, row(this.x, this.valueX(p.x)) + row(this.y, this.valueY(p.y))) };
     }
