@@ -88,11 +88,15 @@ Index ModeSolver::Impl::count_oscillating() const {
                        [](const Pair& p) { return oscillates(p.lambda); });
 }
 
-double ModeSolver::Impl::crowd_among(const std::vector<Pair>& pairs, std::ptrdiff_t crowd) {
-  constexpr double round = 0.05;
+std::vector<double> ModeSolver::Impl::decay_rates() const {
   std::vector<double> rates;
-  for (const Pair& p : pairs)
+  for (const Pair& p : known)
     if (!oscillates(p.lambda) && p.lambda.real() < 0.0) rates.push_back(std::abs(p.lambda));
+  return rates;
+}
+
+double ModeSolver::Impl::crowd_among(std::vector<double> rates, std::ptrdiff_t crowd) {
+  constexpr double round = 0.05;
   std::sort(rates.begin(), rates.end());
   for (auto first = rates.begin(); rates.end() - first >= crowd; ++first)
     if (first[crowd - 1] < (1.0 + round) * *first) return *first;
@@ -101,7 +105,15 @@ double ModeSolver::Impl::crowd_among(const std::vector<Pair>& pairs, std::ptrdif
 
 double ModeSolver::Impl::crowd_rate() const {
   constexpr std::ptrdiff_t crowd = 6;
-  return crowd_among(known, crowd);
+  return crowd_among(decay_rates(), crowd);
+}
+
+double ModeSolver::Impl::crowd_known() const { return std::min(crowded_from, crowd_met); }
+
+double ModeSolver::Impl::short_of_crowd(Complex place, double distance) const {
+  constexpr double part = 0.9;
+  const double rate = crowd_known();
+  return rate < infinity ? std::min(distance, part * std::abs(place + rate)) : distance;
 }
 
 void ModeSolver::Impl::extend_to_count() {
@@ -109,7 +121,7 @@ void ModeSolver::Impl::extend_to_count() {
   constexpr int rounds = 16;
   double further = 2.0;
   for (int more = 0; more < rounds && count_oscillating() < opt.count &&
-                     certificate.radius < std::min(limit, crowded_from);
+                     certificate.radius < std::min(limit, crowd_known());
        ++more) {
     const Index before = count_oscillating();
     const Certificate shorter = certificate;
@@ -216,7 +228,7 @@ void ModeSolver::Impl::certify() {
     bool any = c.unknown > few_missing && dimension() <= dense_recovery && solve_dense(&region);
     if (!any)
       for (const Complex place : certificate.where)
-        any = look_near(place, 0.1 * (round + 1) * radius) || any;
+        any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;
     if (!any) any = look_everywhere(region);
     if (!any) break;
   }

@@ -28,6 +28,7 @@ struct ModeSolver::Impl : Eigenpairs {
     std::vector<Pair> found;
     std::vector<VecXc> vectors;  ///< Ritz vectors, one a pair
     Index counted = 0;           ///< of those asked for
+    double crowd = infinity;     ///< 1/s: where decaying roots crowd, converged or not
     bool all = true;             ///< nothing within the radius is left to converge
   };
   template <class Scalar>
@@ -66,14 +67,20 @@ struct ModeSolver::Impl : Eigenpairs {
   /// 1/s: where known decaying roots crowd, as they do at 1/beta with damping by the stiffness, beyond
   /// which nothing oscillates then; infinite: nowhere.
   double crowd_rate() const;
-  /// The same of any pairs; crowd: how many make one.
-  static double crowd_among(const std::vector<Pair>& pairs, std::ptrdiff_t crowd);
+  /// The same of any rates; crowd: how many make one.
+  static double crowd_among(std::vector<double> rates, std::ptrdiff_t crowd);
+  /// Of the known pairs that decay without oscillating, 1/s.
+  std::vector<double> decay_rates() const;
   /// Cuts the region to be counted short of such a crowd where many of its roots are unknown: to find
   /// it whole costs much and says nothing. False: there is none, or it is cut off already.
   bool avoid_crowd(const RootCount& c, double radius);
   double crowded_from = infinity;  ///< rad/s: rate of the crowd that the region is cut short of
   double most_reach = infinity;    ///< 1/s: of such a region
   double crowd_met = infinity;     ///< 1/s: where the searches met one; they go no further
+  /// The nearer of the two.
+  double crowd_known() const;
+  /// A distance from a place that does not reach into it.
+  double short_of_crowd(Complex place, double distance) const;
   /// All searches that lead to something new.
   void search_all();
   /// Pairs counted on the way may have turned out to be real: the search goes on until as many

@@ -67,6 +67,14 @@ ModeSolver::Impl::Harvest ModeSolver::Impl::harvest(Krylov<Scalar>& k, bool exha
                                                     double radius) {
   Harvest h;
   const Ritz ritz = look(k);
+  // Of hundreds of roots in one place none converges for long; that they are there is seen at once.
+  constexpr std::ptrdiff_t crowd = 24;
+  std::vector<double> rates = decay_rates();
+  for (const Complex theta : ritz.theta) {
+    const Complex lambda = shift + 1.0 / theta;
+    if (lambda.real() < 0.0 && !oscillates(lambda)) rates.push_back(std::abs(lambda));
+  }
+  h.crowd = crowd_among(std::move(rates), crowd);
   const double offset = std::abs(shift - centre());
   for (std::size_t j = 0; j < ritz.theta.size(); ++j) {
     const double size = std::abs(ritz.theta[j]);
@@ -103,7 +111,7 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
   const Index lacking = std::min(missing(), most);
   // Short of a crowd of decaying roots: beyond it (next to) nothing oscillates, and what does is
   // found by the count.
-  constexpr double short_of = 0.98;
+  constexpr double short_of = 0.9;
   const bool growing = lacking > 0 && !(crowd_met < infinity);
   const double radius =
       growing ? opt.max_frequency : std::min(wanted_radius(), short_of * crowd_met);
@@ -112,7 +120,6 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
     k.inject();  // two vectors: the pairs of isotropic rotors come out together
   }
   Index next_look = growing ? std::max<Index>(12, 4 * std::max<Index>(lacking, 1) + 4) : 8;
-  constexpr std::ptrdiff_t crowd = 24;
   const auto op = operation<Scalar>();
   while (true) {
     bool exhausted = false;
@@ -123,13 +130,13 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
     if (k.processed() == 0) return false;
     Harvest h = harvest(k, exhausted, radius);
     const bool enough = growing && opt.count > 0 && h.counted >= lacking;
-    const bool crowded = growing && opt.certify && crowd_among(h.found, crowd) < infinity;
+    const bool crowded = opt.certify && !(crowd_met < infinity) && h.crowd < radius;
+    if (crowded) crowd_met = h.crowd;
     if (exhausted || enough || crowded || h.all) {
-      if (h.found.empty()) return false;
+      if (h.found.empty()) return crowded;  // then once more, short of it
       take(h.found, true);
       sort_known();
       separate_close();
-      if (growing && opt.certify) crowd_met = crowd_among(known, crowd);
       for (const Pair& p : h.found)
         deflated.push_back(std::move(h.vectors[at(p.from)]));
       return !(exhausted && k.locked() == 0);

@@ -196,10 +196,9 @@ std::vector<Complex> RootCounter::locate(Index unknown) {
   return out;
 }
 
-double RootCounter::crowd_rate(Index unknown) {
+double RootCounter::crowd_rate(Index unknown) const {
   WHIRL_EXPECTS(m_ != nullptr && unknown > 0);
   constexpr double narrow = 0.3;  // of the mean: from 1/beta to 2/beta, most of them at 1/beta
-  if (!follow_curve(counting_surprise)) return infinity;
   std::vector<double> moments(2, 0.0);
   for (std::size_t k = 1; k < samples_.size(); ++k)
     add_moments(samples_[k - 1], samples_[k], moments);

@@ -43,9 +43,10 @@ class RootCounter {
   /// After count(): estimates of the unknown roots, Im >= 0, from their moments; a few per cent of
   /// the radius off, more where there are many. Empty when the curve does not settle.
   std::vector<Complex> locate(Index unknown);
-  /// After count(): where many unknown roots crowd on the negative real axis, by their mean and
-  /// spread: the rate, 1/s > 0, that (next to) none of them is below; infinite where they do not.
-  double crowd_rate(Index unknown);
+  /// Right after a count() that is certain, by its samples: where many unknown roots crowd on the
+  /// negative real axis, by their mean and spread: the rate, 1/s > 0, that (next to) none of them is
+  /// below; infinite where they do not.
+  double crowd_rate(Index unknown) const;
 
  private:
   struct Sample {

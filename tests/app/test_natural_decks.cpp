@@ -3,12 +3,14 @@
 // lines of a Campbell diagram over both senses of rotation.
 #include "deck_run.hpp"
 
+#include <core/types.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 #include <string>
 
+using whirl::two_pi;
 using whirl::test::Columns;
 using whirl::test::DeckRun;
 
@@ -523,6 +525,43 @@ speed = { values = ["1000 rpm", "1001 rpm", "1002 rpm", "1100 rpm", "3000 rpm"] 
   const Columns t = run.csv("s_log_decrement.csv");
   for (const auto& row : t.rows)
     EXPECT_NEAR(row[t.column("T1 frequency [Hz]")], 92.1287, 1e-3);
+}
+
+// Damping by the stiffness, beside a crowd of decaying roots: the count ends short of it, and the lines
+// on the terminal say so as the certificate does. The frequencies are those without damping, w, less
+// what the damping ratio beta w/2 takes (rigid bearings: it acts on all there is).
+TEST(NaturalDecks, ACountThatEndsShortOfACrowdSaysSo) {
+  const auto deck = [](const std::string& damping, const std::string& steps) {
+    return "format = 1\n[output]\nreport = false\n[model]\nmesh = { min_elements_per_section = 80 "
+           "}\n[[shaft]]\nname = \"s\"\nmaterial = \"steel\"\n" +
+           damping +
+           "columns = [\"length[mm]\", \"od[mm]\"]\nrows = [[400, 100]]\n[[bearing]]\nat = \"0 "
+           "mm\"\ntype = \"rigid\"\ndirections = [\"x\", \"y\", \"z\"]\n[[bearing]]\nat = \"400 "
+           "mm\"\ntype = \"rigid\"\ndirections = [\"y\", \"z\"]\n" +
+           steps;
+  };
+  const std::string modal =
+      "[[step]]\nname = \"m\"\ntype = \"modal\"\nmotion = \"lateral\"\nmodes = 4\n";
+  const DeckRun plain(deck("", modal));
+  ASSERT_EQ(plain.exit, 0) << plain.log;
+  EXPECT_TRUE(plain.says("Hz, complete,")) << plain.log;
+  const Columns undamped = plain.csv("m_modes.csv");
+  ASSERT_EQ(undamped.rows.size(), 4u);
+  const std::size_t f = undamped.column("frequency [Hz]");
+  const double beta = 0.9 / (two_pi * undamped.rows.back()[f]);  // its damping ratio is 0.45
+  const DeckRun damped(deck(fmt::format("damping = {{ external_beta = \"{:.9g} s\" }}\n", beta),
+                            modal + "[[step]]\nname = \"st\"\ntype = \"stability\"\nmodes = 4\n"
+                                    "speed = { stop = \"3000 rpm\", points = 3 }\n"));
+  ASSERT_EQ(damped.exit, 0) << damped.log;
+  EXPECT_TRUE(damped.says("complete as to what decays no faster than")) << damped.log;
+  EXPECT_TRUE(damped.says("all roots that grow or decay slowly accounted for")) << damped.log;
+  const Columns found = damped.csv("m_modes.csv");
+  ASSERT_EQ(found.rows.size(), 4u) << damped.log;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double ratio = 0.5 * beta * two_pi * undamped.rows[k][f],
+                 expected = undamped.rows[k][f] * std::sqrt(1 - ratio * ratio);
+    EXPECT_NEAR(found.rows[k][f], expected, 1e-6 * expected) << k;
+  }
 }
 
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts

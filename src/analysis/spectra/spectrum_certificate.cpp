@@ -50,12 +50,11 @@ std::string SpectrumCertificate::text_of_list() const {
   if (!list.counted)
     return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
                        top);
-  const bool cut = list.reach < 0.99 * la::oscillating_reach * list.radius;
   std::string band =
-      cut ? fmt::format("all roots up to {:.5g} Hz that decay no faster than {:.3g} 1/s", top,
-                        list.reach)
-          : fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top,
-                        list.damping_ratio());
+      cut() ? fmt::format("all roots up to {:.5g} Hz that decay no faster than {:.3g} 1/s", top,
+                          list.reach)
+            : fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top,
+                          list.damping_ratio());
   if (by_frequency)
     band = fmt::format("all modes from {:.3g} to {:.5g} Hz and up to damping ratio {:.2g}",
                        to_hz(by_frequency->low), top, list.damping_ratio());

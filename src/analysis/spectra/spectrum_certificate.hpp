@@ -38,6 +38,8 @@ struct SpectrumCertificate {
   /// More or fewer motions grow, by the count along the imaginary axis, than were found.
   bool contradicted() const { return axis && axis->counted && axis->unknown != 0; }
   bool complete() const { return open.empty() && list.complete() && !contradicted(); }
+  /// What decays fast was left out of the count, short of a crowd of such roots.
+  bool cut() const { return list.reach < 0.99 * la::oscillating_reach * list.radius; }
   /// Every growing motion is in the list, at any frequency.
   bool stability_certain() const {
     return axis ? axis->certain() : complete() && quiet_above <= list.radius;
