@@ -14,6 +14,7 @@
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
 #include <meshes/scene.hpp>
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -44,8 +45,9 @@ std::string size_line(const model::Model& m) {
   else if (e.open)
     r += "  histories: a row at each accepted step, whose number the run finds out\n";
   if (e.frames > 0)
-    r += fmt::format("  pictures: {} {:.0f} frames, some {}\n", e.fewer_frames ? "up to" : "about",
-                     e.frames, deck::size_text(e.pictures));
+    r += fmt::format("  pictures: {} {}, some {}\n", e.fewer_frames ? "up to" : "about",
+                     count(static_cast<std::size_t>(std::lround(e.frames)), "frame", "frames"),
+                     deck::size_text(e.pictures));
   return r;
 }
 

@@ -38,17 +38,26 @@ std::map<std::string, Interval> times_of_steps(const model::Model& m) {
   return r;
 }
 
-double count_of_nodes(const model::Model& m) {
-  double sections = 0;
+struct Nodes {
+  double line = 0, surface = 0; /**< those of a bore again */
+};
+
+Nodes count_of_nodes(const model::Model& m) {
+  Nodes n;
   const model::Resolution resolution = model::resolution_of(m);
   for (const auto& s : m.shafts)
     for (const auto& x : s.sections) {
       const double longest = model::longest_element(m, s, x, resolution);
       const double parts =
           std::isfinite(longest) ? std::min(1e6, std::ceil(x.length / longest)) : 1.0;
-      sections += std::max<double>(x.min_elements, parts);
+      const double elements = std::max<double>(x.min_elements, parts);
+      n.line += elements;
+      n.surface += elements * (x.id_l > 0 || x.id_r > 0 ? 2 : 1);
     }
-  return sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
+  const auto more = static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
+  n.line += more;
+  n.surface += more;
+  return n;
 }
 
 double count_of_columns(const model::Model& m) {
@@ -63,8 +72,6 @@ struct Frames {
   double count = 0;
   bool at_most = false;  ///< there may be fewer
 };
-
-constexpr double looks_a_shape = 24;  ///< frames of a period
 
 /// Turns of the reference in a transient step, where a drive prescribes them.
 std::optional<double> turns_of(const model::Model& m, const model::Step& s, double duration) {
@@ -110,10 +117,9 @@ struct FramesOfAStep {
   const model::VtkOutput& o;
   const model::Step& s;
   const Interval& run;
-  static Frames shapes(std::size_t n, bool at_most) {
-    return {looks_a_shape * static_cast<double>(n), at_most};
+  static Frames shapes(double n, bool at_most) {
+    return {model::VtkOutput::frames_of_a_shape * n, at_most};
   }
-  static Frames shapes(int n, bool at_most) { return shapes(static_cast<std::size_t>(n), at_most); }
   Frames operator()(const model::TransientStep& t) const { return frames_of(m, o, s, t, run); }
   Frames operator()(const model::StaticStep& x) const {
     if (x.path) {
@@ -128,32 +134,38 @@ struct FramesOfAStep {
   Frames operator()(const model::CriticalStep& x) const { return shapes(x.shapes, true); }
   Frames operator()(const model::TorsionalStep& x) const { return shapes(x.modes, true); }
   Frames operator()(const model::BucklingStep& x) const { return shapes(x.modes, true); }
-  Frames operator()(const model::StabilityStep&) const { return shapes(most_onsets, true); }
-  Frames operator()(const model::UnbalanceStep& x) const {
-    return x.shapes_at.empty() ? shapes(peaks_expected, true) : shapes(x.shapes_at.size(), false);
+  Frames operator()(const model::StabilityStep&) const {
+    return shapes(model::StabilityStep::most_onset_shapes, true);
   }
-  Frames operator()(const model::HarmonicStep& x) const {
-    return x.shapes_at.empty() ? shapes(peaks_expected, true) : shapes(x.shapes_at.size(), false);
-  }
-  template <class Other>
-  Frames operator()(const Other&) const {
-    return {};  // they draw no frames
+  Frames operator()(const model::UnbalanceStep& x) const { return at(x.shapes_at); }
+  Frames operator()(const model::HarmonicStep& x) const { return at(x.shapes_at); }
+  // tables and figures, but no frames
+  Frames operator()(const model::CampbellStep&) const { return {}; }
+  Frames operator()(const model::CriticalMapStep&) const { return {}; }
+  Frames operator()(const model::SensitivityStep&) const { return {}; }
+  Frames operator()(const model::BalancingStep&) const { return {}; }
+  Frames operator()(const model::ApiLateralStep&) const { return {}; }
+  Frames operator()(const model::ApiTorsionalStep&) const { return {}; }
+  /// Operating shapes: where asked for, else at the peaks, whose number is a guess.
+  static Frames at(const std::vector<double>& asked) {
+    return asked.empty() ? shapes(peaks_expected, true)
+                         : shapes(static_cast<double>(asked.size()), false);
   }
   static std::size_t count_of(const model::SpeedRange& r) {
     return r.values.empty() ? static_cast<std::size_t>(r.points) : r.values.size();
   }
-  static constexpr int most_onsets = 3, peaks_expected = 6;
+  static constexpr int peaks_expected = 6;
 };
 
 /// Of a frame: measured on examples of one to thirty nodes, within a third (compression takes more
 /// or less of different motions).
-double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, double nodes) {
+double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, const Nodes& nodes) {
   const auto shows = [&](const char* what) {
     return std::find(o.content.begin(), o.content.end(), what) != o.content.end();
   };
   const auto supports = static_cast<double>(m.bearings.size());
-  return (shows("line") ? 4000 + 350 * nodes : 0) +
-         (shows("surface") ? 5000 + 165 * nodes * o.points_around : 0) +
+  return (shows("line") ? 4000 + 350 * nodes.line : 0) +
+         (shows("surface") ? 5000 + 165 * nodes.surface * o.points_around : 0) +
          (shows("bearings") ? 1000 + 8000 * supports : 0) +
          (shows("orbits") ? 1500 + 6000 * static_cast<double>(m.probes.size()) : 0);
 }
@@ -162,7 +174,8 @@ double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, double n
 
 OutputEstimate estimate_output(const model::Model& m) {
   OutputEstimate e;
-  const double nodes = count_of_nodes(m), columns = count_of_columns(m);
+  const Nodes nodes = count_of_nodes(m);
+  const double columns = count_of_columns(m);
   const auto times = times_of_steps(m);
   double largest = 0;
   for (const auto& s : m.steps) {

@@ -392,6 +392,7 @@ struct StabilityMap {
   std::vector<std::string> values;
 };
 struct StabilityStep {
+  static constexpr int most_onset_shapes = 3;
   SpeedRange speed;
   int modes = 12;
   std::optional<StabilityMap> map;
@@ -592,6 +593,7 @@ struct Step : Entity {
 // ---------------------------------------------------------------- output
 
 struct VtkOutput {
+  static constexpr int frames_of_a_shape = 24;  ///< a period of a mode or response
   std::string step;
   double t0 = 0, t1 = infinity;
   double every = 0;  ///< s between frames; 0 = use frames_per_revolution or frames

@@ -221,7 +221,8 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
                : twist > 0                           ? 0.5 / twist
                                                      : 0.0;  // a torsional mode: half a radian
     const auto writer = io::make_vtk_frames(options);
-    io::write_harmonic(*writer, s.job.scene, shape, factor * v.deformation_scale, 24);
+    io::write_harmonic(*writer, s.job.scene, shape, factor * v.deformation_scale,
+                       model::VtkOutput::frames_of_a_shape);
   }
 }
 

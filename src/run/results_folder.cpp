@@ -69,9 +69,9 @@ void check_space(const model::Model& model, const RunOptions& options) {
   const deck::OutputEstimate e = deck::estimate_output(model);
   if (options.quiet || e.total() < worth_saying) return;
   std::fputs(fmt::format("the output will take {} {} (histories {}, pictures {}); {} are free\n",
-                         e.at_most ? "at most" : "about", deck::size_text(e.total()),
-                         deck::size_text(e.histories), deck::size_text(e.pictures),
-                         deck::size_text(available))
+                         e.at_most || e.fewer_frames ? "at most" : "about",
+                         deck::size_text(e.total()), deck::size_text(e.histories),
+                         deck::size_text(e.pictures), deck::size_text(available))
                  .c_str(),
              stderr);
 }

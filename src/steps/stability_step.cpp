@@ -102,9 +102,11 @@ std::string verdict_line(const analysis::StabilityResult& r) {
   if (r.certain() && r.growth_left() > 1e-8)
     return line + fmt::format(" (certified at {} speeds, but growth below {:.0e} of its frequency)",
                               r.verdicts.size(), r.growth_left());
+  const bool cut = std::any_of(r.verdicts.begin(), r.verdicts.end(),
+                               [](const auto& v) { return v.certificate.cut(); });
   if (r.certain())
-    return line +
-           fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());
+    return line + fmt::format(" (certified at {} speeds: all roots {}accounted for)",
+                              r.verdicts.size(), cut ? "that grow or decay slowly " : "");
   if (r.complete())
     return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)",
                               to_hz(c.list.radius));
@@ -204,7 +206,8 @@ void add_figures(results::FrequencyStep& s, const analysis::StabilityResult& r,
                                     thresholds));
   s.add_figure(plot::plot_campbell(s.file("frequencies"), "Frequencies of these modes", lines,
                                    std::vector<double>{1.0}, {}));
-  for (std::size_t k = 0; k < r.onsets.size() && k < 3; ++k) {
+  constexpr std::size_t most = model::StabilityStep::most_onset_shapes;
+  for (std::size_t k = 0; k < std::min(most, r.onsets.size()); ++k) {
     const analysis::Onset& x = r.onsets[k];
     const std::string name = fmt::format("onset_{}", k + 1);
     s.linear.at(x.speed);
