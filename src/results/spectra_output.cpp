@@ -306,11 +306,13 @@ std::vector<std::span<const SpectraOutput::Trace>> SpectraOutput::sweeps() const
     }
   }
   corners.push_back(traces_.size() - 1);
+  constexpr std::size_t most = 4;  // pictures; else all in one
   std::vector<std::span<const Trace>> parts;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k)
-    if (corners[k + 1] > corners[k] + 1)  // at least three
-      parts.emplace_back(&traces_[corners[k]], corners[k + 1] - corners[k] + 1);
-  return parts;
+    parts.emplace_back(&traces_[corners[k]], corners[k + 1] - corners[k] + 1);
+  const auto too_short = [](const std::span<const Trace>& part) { return part.size() < 3; };
+  const bool apart = parts.size() <= most && std::none_of(parts.begin(), parts.end(), too_short);
+  return apart ? parts : std::vector<std::span<const Trace>>{traces_};
 }
 
 /// "rising speed", with a number where there are several; empty where there is one sweep only.

@@ -122,6 +122,17 @@ TEST(FastRunUp, RisesAndFallsAreDrawnApart) {
   }
 }
 
+// A speed that swings to and fro is no row of run-ups: all in one picture, and none is left out.
+TEST(FastRunUp, ManySwingsAreDrawnTogether) {
+  const std::string swings = with_other(
+      fast_run_up, R"(time = ["0 s", "2 s"], value = ["600 rpm", "6000 rpm"])",
+      R"(time = ["0 s", "1 s", "2 s", "3 s", "4 s", "5 s"], value = ["600 rpm", "6000 rpm", "600 rpm", "6000 rpm", "600 rpm", "6000 rpm"])");
+  const DeckRun d(with_other(swings, "duration = \"2 s\"", "duration = \"5 s\""));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  for (const char* figure : {"t_P_waterfall.svg", "t_P_spectrogram.svg"})
+    EXPECT_TRUE(std::filesystem::exists(d.folder / "r" / "plots" / figure)) << figure;
+}
+
 // The base accelerates ever more: the mass goes aside in proportion, 1 mm in the run, three
 // thousandths of it within a block. It is no vibration of low frequency.
 TEST(FastRunUp, ACentreLineThatMovesIsNoVibration) {
