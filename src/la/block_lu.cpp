@@ -85,7 +85,7 @@ BlockLu<Scalar>::BlockLu(const BlockPattern& pattern, std::span<const unsigned c
       inverse_(static_cast<std::size_t>(pattern.size() * lu::plane) * planes<Scalar>),
       lower_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
       upper_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
-      vec_(static_cast<std::size_t>(pattern.size() * lu::lane) * planes<Scalar>) {
+      vec_(static_cast<std::size_t>(pattern.size() * lu::lane * lu::columns) * planes<Scalar>) {
   // A singular chain leaves a last pivot of the size of the rounding errors it has gathered; they
   // add up at random.
   const double tolerance = std::numeric_limits<double>::epsilon() *
@@ -120,6 +120,23 @@ void BlockLu<Scalar>::solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>
     kernels_.solve_real(symbolic_.plan(), factors_, b.data());
   else
     kernels_.solve_complex(symbolic_.plan(), factors_, reinterpret_cast<double*>(b.data()));
+}
+
+template <class Scalar>
+void BlockLu<Scalar>::solve_columns(
+    Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> b) {
+  WHIRL_EXPECTS(singular_ < 0);
+  WHIRL_EXPECTS(b.rows() == 6 * symbolic_.plan().n);
+  Index first = 0;
+  if constexpr (std::is_same_v<Scalar, Complex>)
+    for (; first + lu::columns <= b.cols(); first += lu::columns) {
+      double* to[lu::columns];
+      for (int r = 0; r < lu::columns; ++r)
+        to[r] = reinterpret_cast<double*>(b.col(first + r).data());
+      kernels_.solve_complex_columns(symbolic_.plan(), factors_, to);
+    }
+  for (; first < b.cols(); ++first)
+    solve(b.col(first));
 }
 
 template <class Scalar>

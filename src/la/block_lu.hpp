@@ -34,6 +34,7 @@ class BlockLu final : public DirectSolver<Scalar> {
           lu::Ordering ordering = lu::Ordering::best, const lu::Kernels* kernels = nullptr);
   Status factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) override;
   void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) override;
+  void solve_columns(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> b) override;
   Index singular_unknown() const override { return singular_; }
   std::string_view name() const override { return "block"; }
   double growth() const override { return outcome_.growth; }

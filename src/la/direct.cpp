@@ -27,6 +27,9 @@ class AutomaticSolver final : public DirectSolver<Scalar> {
     return general;
   }
   void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) override { last_->solve(b); }
+  void solve_columns(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> b) override {
+    last_->solve_columns(b);
+  }
   Index singular_unknown() const override { return last_->singular_unknown(); }
   std::string_view name() const override { return last_->name(); }
   double growth() const override { return last_->growth(); }

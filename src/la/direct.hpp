@@ -24,6 +24,11 @@ class DirectSolver {
   /// b := S^-1 b, length 6 * pattern.size().
   /// @pre factor() went well the last time it was called.
   virtual void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) = 0;
+  /// The same of every column, bit for bit, for less than one after the other.
+  virtual void solve_columns(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> b) {
+    for (Index j = 0; j < b.cols(); ++j)
+      solve(b.col(j));
+  }
   /// After `singular`: the unknown (6 * node + component) whose pivot vanished, or -1.
   virtual Index singular_unknown() const { return -1; }
   virtual std::string_view name() const = 0;

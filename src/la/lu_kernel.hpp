@@ -20,6 +20,8 @@ namespace whirl::la::lu {
 inline constexpr int plane = 48;
 /// Padded vector of one node: 8 doubles a plane.
 inline constexpr int lane = 8;
+/// Right-hand sides that are solved for at once.
+inline constexpr int columns = 4;
 
 /// The symbolic factorisation: one step per node in elimination order. Entry e stands for the pair
 /// of factors (L_ik, U_ki) of step k and a later step i = row[e].
@@ -55,7 +57,7 @@ struct Factors {
   double* inverse = nullptr;  ///< [n] D_k^-1
   double* lower = nullptr;    ///< [entries] L
   double* upper = nullptr;    ///< [entries] U
-  double* vec = nullptr;      ///< [n] node vectors of a solve
+  double* vec = nullptr;      ///< [n] node vectors of a solve, [n][columns] of one of several
   double singular_tolerance =
       0.0;  ///< a pivot below this fraction of its row's size counts as zero
 };
@@ -82,7 +84,9 @@ struct Kernels {
   Outcome (*factor_real)(const Plan&, const Terms&, const Factors&);
   Outcome (*factor_complex)(const Plan&, const Terms&, const Factors&);
   void (*solve_real)(const Plan&, const Factors&, double* b);
-  void (*solve_complex)(const Plan&, const Factors&, double* b);      ///< b interleaved (re, im)
+  void (*solve_complex)(const Plan&, const Factors&, double* b);  ///< b interleaved (re, im)
+  /// The same of several right-hand sides at once, bit for bit what solve_complex makes of each.
+  void (*solve_complex_columns)(const Plan&, const Factors&, double* const b[columns]);
   void (*multiply_real)(const Matrix6&, const double* x, double* y);  ///< y = A x
   void (*multiply_complex)(const Matrix6&, const double* x,
                            double* y);  ///< the same, x and y interleaved

@@ -432,6 +432,78 @@ void solve(const Plan& p, const Factors& f, double* b) {
   }
 }
 
+/// Right-hand sides that fit into the registers with their sums.
+#ifdef __AVX512F__
+constexpr int columns_at_once = 4;
+#else
+constexpr int columns_at_once = 2;
+#endif
+
+/// y[r] -= A x_r of N node vectors beside one another, each as sub_multiply() does it.
+template <int N, class T>
+WHIRL_INLINE void sub_multiply_columns(T (&y)[N], const double* a, const double* x) {
+  constexpr long width = lane * T::planes;
+  T z[N];
+  for (int r = 0; r < N; ++r)
+    z[r] = zero_of<T>();
+  for (int k = 0; k < 6; k += 2) {
+    T a0, a1;
+    load_col(a0, a + 8 * k);
+    load_col(a1, a + 8 * k + 8);
+    for (int r = 0; r < N; ++r) {
+      T s0, s1;
+      load_scalar(s0, x + width * r + k, lane);
+      load_scalar(s1, x + width * r + k + 1, lane);
+      sub_mul(y[r], a0, s0);
+      sub_mul(z[r], a1, s1);
+    }
+  }
+  for (int r = 0; r < N; ++r) {
+    y[r].x = y[r].x + z[r].x;
+    if constexpr (T::planes == 2) y[r].y = y[r].y + z[r].y;
+  }
+}
+
+/// As solve(), of N right-hand sides: every factor is read once for all.
+template <int N, class T>
+void solve_columns(const Plan& p, const Factors& f, double* const* b) {
+  constexpr long stride = plane * T::planes, width = lane * T::planes;
+  for (int k = 0; k < p.n; ++k) {
+    T y[N];
+    const long at = 6 * T::planes * static_cast<long>(p.node[k]);
+    for (int r = 0; r < N; ++r)
+      load_rhs(y[r], b[r] + at);
+    for (int u = p.row_start[k]; u < p.row_start[k + 1]; ++u)
+      sub_multiply_columns<N>(y, f.lower + stride * p.row_entry[u],
+                              f.vec + N * width * p.row_step[u]);
+    for (int r = 0; r < N; ++r)
+      store_vec(f.vec + width * (N * k + r), y[r]);
+  }
+  for (int k = p.n - 1; k >= 0; --k) {
+    double* const v = f.vec + N * width * k;
+    T y[N];
+    for (int r = 0; r < N; ++r)
+      load_vec(y[r], v + width * r);
+    for (long e = p.entry_start[k]; e < p.entry_start[k + 1]; ++e)
+      sub_multiply_columns<N>(y, f.upper + stride * e, f.vec + N * width * p.row[e]);
+    for (int r = 0; r < N; ++r) {
+      store_vec(v + width * r, neg(y[r]));
+      y[r] = zero_of<T>();
+    }
+    sub_multiply_columns<N>(y, f.inverse + stride * k, v);
+    const long at = 6 * T::planes * static_cast<long>(p.node[k]);
+    for (int r = 0; r < N; ++r) {
+      store_vec(v + width * r, y[r]);
+      store_rhs(b[r] + at, y[r]);
+    }
+  }
+}
+
+void solve_complex_columns(const Plan& p, const Factors& f, double* const b[columns]) {
+  for (int r = 0; r < columns; r += columns_at_once)
+    solve_columns<columns_at_once, Cplx>(p, f, b + r);
+}
+
 void multiply_real(const Matrix6& m, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < m.n; ++i) {
     Col even = zero_col(), odd = zero_col();
@@ -564,9 +636,9 @@ void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
 }
 
 constexpr Kernels table = {
-    WHIRL_LU_ISA,        factor_any<Real>,       factor_any<Cplx>, solve<Real>,
-    solve<Cplx>,         multiply_real,          multiply_complex, multiply_three,
-    multiply_exact_real, multiply_exact_complex, add_products,     add_multiply_size};
+    WHIRL_LU_ISA,           factor_any<Real>, factor_any<Cplx>, solve<Real>,    solve<Cplx>,
+    solve_complex_columns,  multiply_real,    multiply_complex, multiply_three, multiply_exact_real,
+    multiply_exact_complex, add_products,     add_multiply_size};
 
 }  // namespace
 

@@ -120,7 +120,7 @@ void SensitivityRun::solve() {
   const run::PhaseTimer timer(s_.job, "sensitivity");
   s_.linear.at(law_.speed);
   // what a thread gets at a time depends on the grid alone
-  constexpr std::size_t run_length = 64;
+  constexpr std::size_t run_length = 128;
   values_.resize(grid_.size());
   run_side_by_side((grid_.size() + run_length - 1) / run_length, s_.job.options.jobs,
                    [&](std::size_t r) {

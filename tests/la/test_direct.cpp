@@ -32,6 +32,12 @@ void expect_solves(DirectSolver<Scalar>& solver, const MCK& m, const Mask& activ
   const Vec<Scalar> b = Vec<Scalar>::Random(s.rows());
   Vec<Scalar> x = b;
   solver.solve(x);
+  // Right-hand sides beside one another: the same bits, wherever a column stands.
+  Eigen::Matrix<Scalar, -1, -1> columns = b.replicate(1, 7);
+  columns.col(5).setZero();
+  solver.solve_columns(columns);
+  for (Index j = 0; j < columns.cols(); ++j)
+    EXPECT_TRUE(columns.col(j) == (j == 5 ? Vec<Scalar>(0.0 * b) : x)) << solver.name() << " " << j;
   const Vec<Scalar> expected = s.partialPivLu().solve(b);
   const double condition =
       s.cwiseAbs().rowwise().sum().maxCoeff() * s.inverse().cwiseAbs().rowwise().sum().maxCoeff();

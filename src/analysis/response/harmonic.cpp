@@ -115,6 +115,24 @@ void HarmonicSolver::solve(VecXc& x) {
   linear_.system().complete(linear_.equilibrium().state, x);
 }
 
+void HarmonicSolver::solve_columns(MatXc& x) {
+  WHIRL_EXPECTS(matrices_ != nullptr);
+  WHIRL_EXPECTS(x.rows() == linear_.system().size());
+  if (!spin_free_) {
+    for (Index k = 0; k < x.rows(); ++k)
+      if (!motion_.takes_part(k)) x.row(k).setZero();
+    solver_->solve_columns(x);
+  }
+  for (Index j = 0; j < x.cols(); ++j) {
+    column_ = x.col(j);
+    if (spin_free_)
+      solve(column_);
+    else
+      linear_.system().complete(linear_.equilibrium().state, column_);
+    x.col(j) = column_;
+  }
+}
+
 VecXc HarmonicSolver::multiply(const VecXc& x) const {
   WHIRL_EXPECTS(matrices_ != nullptr);
   VecXc out = times(matrices_->K, x);

@@ -24,6 +24,8 @@ class HarmonicSolver {
   /// it moves without bound become NaN, the others are right.
   /// @pre prepare() went well; x of length system().size().
   void solve(VecXc& x);
+  /// The same of every column.
+  void solve_columns(MatXc& x);
   Linearizer& linear() { return linear_; }
 
  private:
@@ -54,6 +56,7 @@ class HarmonicSolver {
   bool spin_free_ = false;  ///< prepared without inertia: `first_` and `last_` are used
   double w_ = 0;
   const la::MCK* matrices_ = nullptr;
+  VecXc column_;
   Held first_, last_;  ///< free spins held at the first and at the last node of their lines
 };
 

@@ -2,12 +2,13 @@
 
 #include <core/contract.hpp>
 
+#include <algorithm>
+
 namespace whirl::analysis {
 
 SensitivityMeter::SensitivityMeter(Linearizer& linear, std::vector<OpenedLoop> loops)
     : loops_(std::move(loops)),
       solver_(linear),
-      x_(linear.system().size()),
       values_(loops_.size()) {}
 
 Complex SensitivityMeter::seen(const OpenedLoop& loop, const VecXc& x) {
@@ -21,25 +22,32 @@ Complex SensitivityMeter::seen(const OpenedLoop& loop, const VecXc& x) {
   return loop.axis.x() * a.y + loop.axis.y() * a.z;
 }
 
-Complex SensitivityMeter::solve(const OpenedLoop& loop) {
-  x_.setZero();
-  for (const auto& [unknown, force] : loop.entry)
-    x_[unknown] += force;
-  solver_.solve(x_);
-  return 1.0 + seen(loop, x_);
+void SensitivityMeter::solve(std::span<const OpenedLoop> loops, std::span<Complex> values) {
+  x_.setZero(solver_.linear().system().size(), static_cast<Index>(loops.size()));
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    for (const auto& [unknown, force] : loops[k].entry)
+      x_(unknown, static_cast<Index>(k)) += force;
+  solver_.solve_columns(x_);
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    column_ = x_.col(static_cast<Index>(k));
+    values[k] = 1.0 + seen(loops[k], column_);
+  }
 }
 
 const std::vector<Complex>& SensitivityMeter::at(double Omega, double w) {
   WHIRL_EXPECTS(w > 0);
-  const bool regular = solver_.prepare(Omega, w);
-  for (std::size_t k = 0; k < loops_.size(); ++k)
-    values_[k] = regular ? solve(loops_[k]) : Complex(nan, nan);
+  if (solver_.prepare(Omega, w))
+    solve(loops_, values_);
+  else
+    std::fill(values_.begin(), values_.end(), Complex(nan, nan));
   return values_;
 }
 
 Complex SensitivityMeter::of(std::size_t loop, double Omega, double w) {
   WHIRL_EXPECTS(w > 0 && loop < loops_.size());
-  return solver_.prepare(Omega, w) ? solve(loops_[loop]) : Complex(nan, nan);
+  Complex value(nan, nan);
+  if (solver_.prepare(Omega, w)) solve({&loops_[loop], 1}, {&value, 1});
+  return value;
 }
 
 }  // namespace whirl::analysis

@@ -30,11 +30,12 @@ class SensitivityMeter {
 
  private:
   Complex seen(const OpenedLoop& loop, const VecXc& x);
-  /// With the matrices prepared.
-  Complex solve(const OpenedLoop& loop);
+  /// With the matrices prepared, of these loops.
+  void solve(std::span<const OpenedLoop> loops, std::span<Complex> values);
   std::vector<OpenedLoop> loops_;
   HarmonicSolver solver_;
-  VecXc x_;
+  MatXc x_;  ///< a column a loop
+  VecXc column_;
   std::vector<Complex> values_;
 };
 
