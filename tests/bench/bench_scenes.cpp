@@ -3,6 +3,7 @@
 //   build/bin/bench_scenes build/bin/whirl .
 #include <run/job.hpp>
 #include <deck/deck.hpp>
+#include <steps/transient_step.hpp>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -66,7 +67,7 @@ void row(const char* what, const Cost& c) {
 struct Process {
   double wall = infinity, cpu = infinity, megabytes = 0;
 };
-Process run(const std::vector<std::string>& arguments, int repeats) {
+Process measured(const std::vector<std::string>& arguments, int repeats) {
   Process best;
   for (int k = 0; k < repeats; ++k) {
     const auto t0 = std::chrono::steady_clock::now();
@@ -168,7 +169,7 @@ int main(int argc, char** argv) {
   const std::string out = (scratch() / "out").string();
   auto process = [&](const char* what, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), argv[1]);
-    const Process p = run(arguments, 5);
+    const Process p = measured(arguments, 5);
     std::printf("| %s | %.1f | %.1f | %.1f |\n", what, 1e3 * p.wall, 1e3 * p.cpu, p.megabytes);
   };
   process("`whirl version`", {"version"});
