@@ -57,6 +57,8 @@ bool ModeSolver::Impl::look_near(Complex place, double distance) {
   o.dense_below = 0;
   Impl near(pattern, active, o);
   constexpr Index old = 1 << 20;  // marks what was known before
+  near.watches_crowds = true;
+  near.crowds = crowds;
   near.set(*m);
   near.known = known;
   for (Pair& p : near.known)
@@ -64,6 +66,7 @@ bool ModeSolver::Impl::look_near(Complex place, double distance) {
   near.prepare_operator(false);
   for (unsigned seed = 1; seed < 12; ++seed)
     if (!near.search(near.krylov_complex, seed)) break;
+  crowds = std::move(near.crowds);
   bool any = false;
   for (Pair& p : near.known)
     if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty)
@@ -75,11 +78,15 @@ bool ModeSolver::Impl::look_near(Complex place, double distance) {
 bool ModeSolver::Impl::look_everywhere(const CountRegion& region) {
   // Each search keeps clear of all that is known: its cost grows with the square of that.
   constexpr std::size_t many = 200;
+  constexpr double within_crowd = 0.05;
   if (known.size() > many) return false;
   bool any = false;
   for (const double height : {0.0, 0.5, 1.0})
-    for (const double left : {0.0, 0.7, 1.4, 2.1, 2.8})
-      any = look_near(region.radius * Complex(-left, height), 0.5 * region.radius) || any;
+    for (const double left : {0.0, 0.7, 1.4, 2.1, 2.8}) {
+      const Complex place = region.radius * Complex(-left, height);
+      const double distance = short_of_crowd(place, 0.5 * region.radius);
+      if (distance > within_crowd * region.radius) any = look_near(place, distance) || any;
+    }
   return any;
 }
 
@@ -88,45 +95,61 @@ Index ModeSolver::Impl::count_oscillating() const {
                        [](const Pair& p) { return oscillates(p.lambda); });
 }
 
-std::vector<double> ModeSolver::Impl::decay_rates() const {
-  std::vector<double> rates;
+std::vector<Complex> ModeSolver::Impl::known_decaying() const {
+  std::vector<Complex> places;
   for (const Pair& p : known)
-    if (!oscillates(p.lambda) && p.lambda.real() < 0.0) rates.push_back(std::abs(p.lambda));
-  return rates;
+    if (decays_fast(p.lambda)) places.emplace_back(p.lambda.real(), std::abs(p.lambda.imag()));
+  return places;
 }
 
-double ModeSolver::Impl::crowd_among(std::vector<double> rates, std::ptrdiff_t crowd) {
+std::vector<Complex> ModeSolver::Impl::crowded_places(const std::vector<Complex>& decaying,
+                                                      std::ptrdiff_t crowd) {
   constexpr double round = 0.05;
-  std::sort(rates.begin(), rates.end());
-  for (auto first = rates.begin(); rates.end() - first >= crowd; ++first)
-    if (first[crowd - 1] < (1.0 + round) * *first) return *first;
-  return infinity;
+  std::vector<Complex> places;
+  for (const Complex place : decaying) {
+    const double near = round * std::abs(place);
+    const auto others = std::count_if(decaying.begin(), decaying.end(), [&](Complex other) {
+      return std::abs(other - place) < near;
+    });
+    if (others >= crowd) places.push_back(place);
+  }
+  return places;
 }
 
-double ModeSolver::Impl::crowd_rate() const {
-  constexpr std::ptrdiff_t crowd = 6;
-  return crowd_among(decay_rates(), crowd);
+double ModeSolver::Impl::to_nearest(const std::vector<Complex>& crowds, Complex place) {
+  double distance = infinity;
+  for (const Complex crowd : crowds)
+    distance = std::min({distance, std::abs(place - crowd), std::abs(place - std::conj(crowd))});
+  return distance;
 }
-
-double ModeSolver::Impl::crowd_known() const { return std::min(crowded_from, crowd_met); }
 
 double ModeSolver::Impl::short_of_crowd(Complex place, double distance) const {
   constexpr double part = 0.9;
-  const double rate = crowd_known();
-  return rate < infinity ? std::min(distance, part * std::abs(place + rate)) : distance;
+  return std::min(distance, part * to_crowd(place));
+}
+
+double ModeSolver::Impl::crowd_decay() const {
+  constexpr std::ptrdiff_t few = 6;
+  double decay = infinity;
+  for (const Complex place : crowds)
+    decay = std::min(decay, -place.real());
+  for (const Complex place : crowded_places(known_decaying(), few))
+    decay = std::min(decay, -place.real());
+  return decay;
 }
 
 void ModeSolver::Impl::extend_to_count() {
   const double given = least_radius, limit = std::min(opt.max_frequency, crude_limit());
+  constexpr double before_crowd = 0.9;
   constexpr int rounds = 16;
   double further = 2.0;
   for (int more = 0; more < rounds && count_oscillating() < opt.count &&
-                     certificate.radius < std::min(limit, crowd_known());
+                     certificate.radius < std::min(limit, before_crowd * to_crowd(0.0));
        ++more) {
     const Index before = count_oscillating();
     const Certificate shorter = certificate;
-    least_radius = further * certificate.radius;
-    if (least_radius < crowd_rate()) search_all();  // else the count alone tells what is missing
+    least_radius = std::min(further * certificate.radius, before_crowd * to_crowd(0.0));
+    if (least_radius < crowd_decay()) search_all();  // else the count alone tells what is missing
     certify();
     if (!certificate.counted && shorter.complete()) {  // no further than it can be counted
       certificate = shorter;
@@ -141,12 +164,13 @@ void ModeSolver::Impl::extend_to_count() {
 bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
   constexpr Index many = 16;
   constexpr double short_of = 0.8;
-  if (c.unknown <= many || crowded_from < infinity) return false;
-  double rate = crowd_rate();
-  if (!(rate < infinity)) rate = counter->crowd_rate(c.unknown);  // none of them is known
-  if (oscillating_reach * radius < rate) return false;
-  crowded_from = rate;
-  most_reach = short_of * rate;
+  if (c.unknown <= many || cut_short) return false;
+  double decay = crowd_decay();
+  if (!(decay < infinity)) decay = counter->crowd_rate(c.unknown);  // none of them is known
+  if (oscillating_reach * radius < decay) return false;
+  if (crowds.empty()) crowds.emplace_back(-decay, 0.0);
+  cut_short = true;
+  most_reach = short_of * decay;
   return true;
 }
 
@@ -196,7 +220,8 @@ bool ModeSolver::Impl::only_zeros_missing() {
 
 void ModeSolver::Impl::certify() {
   certificate = {};
-  crowded_from = most_reach = infinity;
+  cut_short = false;
+  most_reach = infinity;
   if (!counter) counter.emplace(pattern, active);
   const std::size_t before = known.size();
   double radius = count_radius();

@@ -5,6 +5,7 @@
 #include <la/eigenpairs.hpp>
 #include <la/root_count.hpp>
 
+#include <algorithm>
 #include <optional>
 
 namespace whirl::la {
@@ -26,10 +27,10 @@ struct ModeSolver::Impl : Eigenpairs {
   /// or lies beyond the radius.
   struct Harvest {
     std::vector<Pair> found;
-    std::vector<VecXc> vectors;  ///< Ritz vectors, one a pair
-    Index counted = 0;           ///< of those asked for
-    double crowd = infinity;     ///< 1/s: where decaying roots crowd, converged or not
-    bool all = true;             ///< nothing within the radius is left to converge
+    std::vector<VecXc> vectors;    ///< Ritz vectors, one a pair
+    Index counted = 0;             ///< of those asked for
+    std::optional<Complex> crowd;  ///< where decaying roots crowd, converged or not
+    bool all = true;               ///< nothing within the radius is left to converge
   };
   template <class Scalar>
   Harvest harvest(Krylov<Scalar>& k, bool exhausted, double radius);
@@ -64,23 +65,29 @@ struct ModeSolver::Impl : Eigenpairs {
   /// tell them apart.
   bool look_everywhere(const CountRegion& region);
   Index count_oscillating() const;
-  /// 1/s: where known decaying roots crowd, as they do at 1/beta with damping by the stiffness, beyond
-  /// which nothing oscillates then; infinite: nowhere.
-  double crowd_rate() const;
-  /// The same of any rates; crowd: how many make one.
-  static double crowd_among(std::vector<double> rates, std::ptrdiff_t crowd);
-  /// Of the known pairs that decay without oscillating, 1/s.
-  std::vector<double> decay_rates() const;
-  /// Cuts the region to be counted short of such a crowd where many of its roots are unknown: to find
-  /// it whole costs much and says nothing. False: there is none, or it is cut off already.
-  bool avoid_crowd(const RootCount& c, double radius);
-  double crowded_from = infinity;  ///< rad/s: rate of the crowd that the region is cut short of
-  double most_reach = infinity;    ///< 1/s: of such a region
-  double crowd_met = infinity;     ///< 1/s: where the searches met one; they go no further
-  /// The nearer of the two.
-  double crowd_known() const;
-  /// A distance from a place that does not reach into it.
+  /// Damping by the stiffness makes roots crowd: at -1/beta, and where it is the rotor's own, as far
+  /// above and below as the rotor turns. Hundreds in one place cost much and say nothing: searches and
+  /// counts end short of them, and (next to) nothing oscillates beyond. Im >= 0 here.
+  std::vector<Complex> crowds;
+  bool watches_crowds = opt.certify;
+  /// Places round which so many of these lie within a twentieth of the distance from zero.
+  static std::vector<Complex> crowded_places(const std::vector<Complex>& decaying,
+                                             std::ptrdiff_t crowd);
+  static bool decays_fast(Complex lambda) { return lambda.real() < -0.2 * std::abs(lambda); }
+  /// Of the known pairs.
+  std::vector<Complex> known_decaying() const;
+  /// From a place to the nearest crowd; infinite: there is none.
+  double to_crowd(Complex place) const { return to_nearest(crowds, place); }
+  static double to_nearest(const std::vector<Complex>& crowds, Complex place);
+  /// A distance from a place that does not reach into one.
   double short_of_crowd(Complex place, double distance) const;
+  /// 1/s: decay of the slowest crowd that is met or known; infinite: none.
+  double crowd_decay() const;
+  /// Cuts the region to be counted short of a crowd where many of its roots are unknown. False: there
+  /// is none, or it is cut off already.
+  bool avoid_crowd(const RootCount& c, double radius);
+  bool cut_short = false;        ///< the region is
+  double most_reach = infinity;  ///< 1/s: of such a region
   /// All searches that lead to something new.
   void search_all();
   /// Pairs counted on the way may have turned out to be real: the search goes on until as many

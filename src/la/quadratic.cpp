@@ -69,12 +69,16 @@ ModeSolver::Impl::Harvest ModeSolver::Impl::harvest(Krylov<Scalar>& k, bool exha
   const Ritz ritz = look(k);
   // Of hundreds of roots in one place none converges for long; that they are there is seen at once.
   constexpr std::ptrdiff_t crowd = 24;
-  std::vector<double> rates = decay_rates();
+  std::vector<Complex> decaying = known_decaying();
   for (const Complex theta : ritz.theta) {
     const Complex lambda = shift + 1.0 / theta;
-    if (lambda.real() < 0.0 && !oscillates(lambda)) rates.push_back(std::abs(lambda));
+    if (decays_fast(lambda)) decaying.emplace_back(lambda.real(), std::abs(lambda.imag()));
   }
-  h.crowd = crowd_among(std::move(rates), crowd);
+  const std::vector<Complex> places = crowded_places(decaying, crowd);
+  const auto nearest = std::min_element(places.begin(), places.end(), [&](Complex a, Complex b) {
+    return std::abs(a - centre()) < std::abs(b - centre());
+  });
+  if (nearest != places.end()) h.crowd = *nearest;
   const double offset = std::abs(shift - centre());
   for (std::size_t j = 0; j < ritz.theta.size(); ++j) {
     const double size = std::abs(ritz.theta[j]);
@@ -112,9 +116,9 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
   // Short of a crowd of decaying roots: beyond it (next to) nothing oscillates, and what does is
   // found by the count.
   constexpr double short_of = 0.9;
-  const bool growing = lacking > 0 && !(crowd_met < infinity);
+  const bool growing = lacking > 0 && crowds.empty();
   const double radius =
-      growing ? opt.max_frequency : std::min(wanted_radius(), short_of * crowd_met);
+      growing ? opt.max_frequency : std::min(wanted_radius(), short_of * to_crowd(centre()));
   if (growing) {
     k.inject();
     k.inject();  // two vectors: the pairs of isotropic rotors come out together
@@ -130,8 +134,8 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
     if (k.processed() == 0) return false;
     Harvest h = harvest(k, exhausted, radius);
     const bool enough = growing && opt.count > 0 && h.counted >= lacking;
-    const bool crowded = opt.certify && !(crowd_met < infinity) && h.crowd < radius;
-    if (crowded) crowd_met = h.crowd;
+    const bool crowded = watches_crowds && h.crowd && to_nearest({*h.crowd}, centre()) < radius;
+    if (crowded) crowds.push_back(*h.crowd);
     if (exhausted || enough || crowded || h.all) {
       if (h.found.empty()) return crowded;  // then once more, short of it
       take(h.found, true);
@@ -327,7 +331,7 @@ void ModeSolver::Impl::solve(const MCK& matrices) {
   result.clear();
   deflated.clear();
   certificate = {};
-  crowd_met = infinity;
+  crowds.clear();
   if (n == 0 || (first_order && !damped)) {
     known.clear();
     return;

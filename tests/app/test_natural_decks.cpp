@@ -564,6 +564,74 @@ TEST(NaturalDecks, ACountThatEndsShortOfACrowdSaysSo) {
   }
 }
 
+// Damping of the material, by its stiffness: hundreds of roots crowd at -1/beta, those of bending as far
+// above and below as the rotor turns, amid what is asked for.
+// Searches about places of the plane went through them one by one (minutes); where they are is known
+// from the first of them that is met. The onset of whirl is that of a coarse mesh, which finds all.
+TEST(NaturalDecks, AFineMeshWithMaterialDampingIsJudgedLikeACoarseOne) {
+  const auto onset = [](int elements) {
+    const DeckRun d(fmt::format(R"(format = 1
+[output]
+report = false
+[model]
+mesh = {{ min_elements_per_section = {} }}
+[[shaft]]
+name = "s"
+material = "steel"
+damping = {{ internal_beta = "1e-3 s" }}
+columns = ["length[mm]", "od[mm]"]
+rows = [[300, 60], [200, 80], [300, 60]]
+[[disk]]
+at = "400 mm"
+od = "300 mm"
+id = "80 mm"
+width = "40 mm"
+material = "steel"
+[[bearing]]
+at = "50 mm"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+cyy = "2e4 N.s/m"
+czz = "2e4 N.s/m"
+[[bearing]]
+at = "750 mm"
+type = "linear"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+cyy = "2e4 N.s/m"
+czz = "2e4 N.s/m"
+[[step]]
+name = "m"
+type = "modal"
+speed = "6000 rpm"
+modes = 12
+[[step]]
+name = "lateral"
+type = "modal"
+motion = "lateral"
+speed = "6000 rpm"
+modes = 12
+[[step]]
+name = "st"
+type = "stability"
+modes = 4
+speed = {{ values = ["9000 rpm", "10000 rpm"] }}
+)",
+                                elements));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    EXPECT_TRUE(d.says("certified at 2 speeds: all roots")) << d.log;
+    EXPECT_TRUE(elements < 10 || d.says("complete as to what decays no faster than")) << d.log;
+    const Columns t = d.csv("st_onset.csv");
+    EXPECT_EQ(t.rows.size(), 1u) << d.log;
+    return t.rows.empty() ? 0.0 : t.rows.front()[t.column("speed [rpm]")];
+  };
+  const double coarse = onset(4);
+  EXPECT_GT(coarse, 9400.0);
+  EXPECT_NEAR(onset(20), coarse, 2e-4 * coarse);
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {
