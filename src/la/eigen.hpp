@@ -43,6 +43,11 @@ inline bool oscillates(Complex lambda) {
          std::abs(lambda.real()) <= oscillating_reach * std::abs(lambda.imag());
 }
 
+/// Growth below this part of |lambda| is not told from none: so much the energy bound leaves open of
+/// what lies above a list (growth_bound.hpp). What a list says may not depend on how far it goes: a
+/// twist that nothing damps is driven by cross-coupled forces, through the sag, by 1e-10.
+inline constexpr double unnoticed_growth = 1e-9;
+
 struct ModeOptions {
   Index count = 12;  ///< modes wanted: the nearest to the shift (none given: of least |lambda|)
   /// Where to look. Complex: only modes near it are sought, in complex arithmetic. Not set: least

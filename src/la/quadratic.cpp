@@ -267,7 +267,8 @@ std::vector<std::size_t> ModeSolver::Impl::choose_counted() const {
   const CountRegion region{certificate.radius, certificate.reach};
   // What grows is listed wherever it was counted, and what is slower than that: a list has no holes.
   const auto grows = [&](const Pair& p) {
-    return opt.growing && region.contains(p.lambda) && p.lambda.real() > p.uncertainty;
+    return opt.growing && region.contains(p.lambda) &&
+           p.lambda.real() > std::max(p.uncertainty, unnoticed_growth * std::abs(p.lambda));
   };
   std::vector<std::size_t> oscillating, real_ones;
   for (std::size_t i = 0; i < known.size(); ++i) {

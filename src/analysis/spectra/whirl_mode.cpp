@@ -16,11 +16,6 @@ namespace {
 /// at is known to a multiple of eps.
 constexpr double roundings_an_entry = 64.0;
 
-/// Growth below this part of |lambda| is not told from none: so much the energy bound leaves open of
-/// what lies above a list (growth_bound.hpp). What a list says may not depend on how far it goes: a
-/// twist that nothing damps is driven by cross-coupled forces, through the sag, by 1e-10.
-constexpr double unnoticed_growth = 1e-9;
-
 }  // namespace
 
 double rounding_of(const la::Mode& m) {
@@ -190,7 +185,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   linear.system().complete(linear.equilibrium().state, w.x);
   w.residual = mode.residual;
   w.from = mode.from;
-  w.rounding = std::max(rounding_of(mode), unnoticed_growth * std::abs(mode.lambda));
+  w.rounding = std::max(rounding_of(mode), la::unnoticed_growth * std::abs(mode.lambda));
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
   w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
