@@ -30,6 +30,50 @@ double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, cons
   return worst;
 }
 
+bool turns(int component) { return component >= 3; }
+
+/// The same of masses. An unbalance is an eccentricity of what stands at its node, and ties the
+/// displacements there to the angles; its size is to be compared with the inertia of the whole line,
+/// however little of it stands at the node.
+double difference_of_masses(const system::System& system, const la::BlockMatrix<6>& x,
+                            const la::BlockMatrix<6>& y, const VecX& diagonal) {
+  VecX mass = VecX::Zero(system.lines()), rotary = mass;
+  for (Index i = 0; i < system.nodes(); ++i) {
+    const Index line = system.node(i).line;
+    mass[line] += diagonal.segment<3>(6 * i).maxCoeff();
+    rotary[line] += diagonal.segment<2>(6 * i + system::gamma2).maxCoeff();
+  }
+  const la::BlockPattern& p = x.pattern();
+  la::BlockMatrix<6> rest = y;  // y and what is no unbalance
+  double worst = 0.0;
+  for (Index i = 0; i < p.size(); ++i) {
+    const Index line = system.node(i).line;
+    const Index s = p.diagonal(i);
+    const Matrix<6> d = x.block(s) - y.block(s);
+    double coupling = 0.0;
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b)
+        if (a != system::spin_phi && b != system::spin_phi && turns(a) != turns(b))
+          coupling = std::max(coupling, std::abs(d(a, b)));
+    const double size = std::sqrt(mass[line] * rotary[line]);
+    if (coupling > 0.0 && size > 0.0) worst = std::max(worst, coupling / size);
+    // m e^2, with room for the angle it is seen at
+    const double m = diagonal.segment<3>(6 * i).maxCoeff();
+    const double of_tilt = m > 0.0 ? 4.0 * coupling * coupling / m : 0.0;
+    if (of_tilt > 0.0) worst = std::max(worst, of_tilt / (4.0 * rotary[line]));
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b) {
+        if (turns(a) != turns(b)) continue;
+        const double left = std::max(0.0, std::abs(d(a, b)) - (turns(a) ? of_tilt : 0.0));
+        rest.block(s)(a, b) += left;
+      }
+  }
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s)
+      if (s != p.diagonal(i)) rest.block(s) = x.block(s);
+  return std::max(worst, difference(rest, y, diagonal));
+}
+
 VecX diagonal_of(const la::BlockMatrix<6>& x) {
   const la::BlockPattern& p = x.pattern();
   VecX d = VecX::Zero(6 * p.size());
@@ -38,8 +82,8 @@ VecX diagonal_of(const la::BlockMatrix<6>& x) {
   return d;
 }
 
-/// An unbalance moves the mass of a station by a share of 1e-6 or so; a key way or a second moment
-/// of area shows more.
+/// An unbalance moves the mass of a line by a share of 1e-6 or so; a key way or a second moment of
+/// area shows more.
 constexpr double turning_share = 1e-3;
 
 /// sum over h of cosine(., h - 1) cos(h angle) + sine(., h - 1) sin(h angle); add(e, x): x more in
@@ -85,7 +129,8 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
     double worst = 0.0;
     for (double theta : {0.4, 1.9}) {
       linear.running().tangent_at(e.frames, Omega, e.q, theta, turned);
-      worst = std::max({worst, difference(turned.K, m.K, K), difference(turned.M, m.M, M)});
+      worst = std::max(
+          {worst, difference(turned.K, m.K, K), difference_of_masses(system, turned.M, m.M, M)});
     }
     if (worst > turning_share)
       throw run_error("E39",
