@@ -356,7 +356,7 @@ struct ModalStep {
 struct CampbellStep {
   SpeedRange speed;
   int modes = 10;
-  std::vector<double> orders{1.0};
+  std::vector<double> orders;  ///< empty: once a turn of every shaft
   double max_frequency = infinity;
   bool damped = true;
   MotionKind motion = MotionKind::all;
@@ -364,8 +364,8 @@ struct CampbellStep {
 };
 struct CriticalStep {
   double max_speed = 0;
-  std::vector<double> orders{1.0};
-  int modes = 10;  ///< critical speeds listed of each order, from the lowest
+  std::vector<double> orders;  ///< empty: once a turn of every shaft
+  int modes = 10;              ///< critical speeds listed of each order, from the lowest
   double min_speed = 0;
   MotionKind motion = MotionKind::all;
   int shapes = 4;
@@ -438,7 +438,7 @@ struct SensitivityStep {
 };
 struct TorsionalStep {
   double max_speed = 0;
-  std::vector<double> orders{1.0};
+  std::vector<double> orders;  ///< empty: once a turn of every shaft
   int modes = 6;
   About about = About::equilibrium;
 };

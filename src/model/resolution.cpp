@@ -176,7 +176,9 @@ struct Demand {
     return modes(s.modes, s.max_frequency, s.motion);
   }
   Resolution operator()(const CriticalStep& s) const {
-    return modes(s.modes, s.max_speed > 0 ? s.max_speed * largest(s.orders) : infinity, s.motion);
+    return modes(s.modes,
+                 s.max_speed > 0 ? s.max_speed * largest(orders_of(m, s.orders)) : infinity,
+                 s.motion);
   }
   Resolution operator()(const CriticalMapStep& s) const {
     return {std::abs(s.max_speed * s.order), 0.0, 0};
@@ -221,6 +223,18 @@ struct Demand {
 };
 
 }  // namespace
+
+std::vector<double> orders_of(const Model& model, const std::vector<double>& asked) {
+  if (!asked.empty()) return asked;
+  std::vector<double> ratios;
+  for (const Shaft& s : model.shafts)
+    if (s.rotating && s.speed_ratio != 0.0) ratios.push_back(std::abs(s.speed_ratio));
+  if (ratios.empty()) ratios.push_back(1.0);
+  std::sort(ratios.begin(), ratios.end());
+  const auto same = [](double a, double b) { return b - a < 1e-9 * b; };
+  ratios.erase(std::unique(ratios.begin(), ratios.end(), same), ratios.end());
+  return ratios;
+}
 
 Resolution resolution_of(const Model& m) {
   Resolution all;

@@ -27,6 +27,10 @@ struct Resolution {
   int half_waves = 0;    ///< of static deflections too large to be linear, or of buckling; 0: none
 };
 
+/// The excitation orders of a step: those asked for, or once a turn of every shaft that rotates: the
+/// sizes of their speed ratios, rising.
+std::vector<double> orders_of(const Model& model, const std::vector<double>& asked);
+
 /// Of all steps together.
 Resolution resolution_of(const Model& m);
 

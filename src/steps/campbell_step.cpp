@@ -2,6 +2,7 @@
 // critical speeds on it.
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
+#include <model/resolution.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
@@ -220,7 +221,9 @@ analysis::Campbell follow_lines(Index asked,
 
 }  // namespace
 
-void run_campbell_step(run::Job& job, const model::Step& step, const model::CampbellStep& law) {
+void run_campbell_step(run::Job& job, const model::Step& step, const model::CampbellStep& asked) {
+  model::CampbellStep law = asked;
+  law.orders = model::orders_of(job.model, asked.orders);
   analysis::CampbellOptions o;
   o.speeds = results::speeds_of(law.speed);
   o.track.modes.count = law.modes;

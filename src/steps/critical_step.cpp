@@ -1,6 +1,7 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/spectra/critical.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
+#include <model/resolution.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
@@ -40,7 +41,9 @@ class CriticalRun {
   CriticalRun(run::Job& job, const model::Step& step, const model::CriticalStep& law)
       : law_(law),
         s_(job, step, "critical_speeds", "critical speeds", law.max_speed),
-        mesh_(s_) {}
+        mesh_(s_) {
+    law_.orders = model::orders_of(job.model, law.orders);
+  }
   void execute();
 
  private:
@@ -51,7 +54,7 @@ class CriticalRun {
                 io::Table& table);
   void look_below();
   void add_shapes(double order, const std::vector<analysis::Critical>& list);
-  void add_to_line(const std::vector<analysis::Critical>& list);
+  void add_to_line(double order, const std::vector<analysis::Critical>& list);
 
   model::CriticalStep law_;
   results::FrequencyStep s_;
@@ -170,12 +173,16 @@ void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>
   }
 }
 
-void CriticalRun::add_to_line(const std::vector<analysis::Critical>& list) {
+void CriticalRun::add_to_line(double order, const std::vector<analysis::Critical>& list) {
   constexpr std::size_t most = 4;
-  const bool full = line_.size() >= 60;
+  constexpr std::size_t long_enough = 100;
+  const bool several = law_.orders.size() > 1;
+  const bool full = line_.size() >= long_enough;
+  if (several && !full && !list.empty())
+    line_ += fmt::format("{}{:g}x: ", line_.empty() ? "" : "; ", order);
   for (std::size_t k = 0; k < std::min(list.size(), full ? 0 : most); ++k) {
     const analysis::WhirlMode& mode = list[k].mode;
-    line_ += fmt::format("{}{:.6g} ({})", line_.empty() ? "" : ", ", to_rpm(list[k].speed),
+    line_ += fmt::format("{}{:.6g} ({})", k == 0 ? "" : ", ", to_rpm(list[k].speed),
                          mode.direction == analysis::Direction::none ? to_string(mode.kind)
                                                                      : to_string(mode.direction));
   }
@@ -190,7 +197,7 @@ void CriticalRun::find(bool damped) {
     add_rows(order, damped, list, table);
     if (damped != damping_) continue;  // shown once: with damping where there is any
     add_shapes(order, list);
-    add_to_line(list);
+    add_to_line(order, list);
   }
   if (!damped) look_below();
   if (table.rows.empty())

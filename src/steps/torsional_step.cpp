@@ -1,6 +1,7 @@
 // A torsional step: natural frequencies in torsion, their shapes, and the speeds at which orders of
 // the speed meet them.
 #include <analysis/spectra/critical.hpp>
+#include <model/resolution.hpp>
 #include <results/frequency.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
@@ -96,7 +97,9 @@ std::vector<plot::CriticalMark> add_criticals(results::FrequencyStep& s,
 
 }  // namespace
 
-void run_torsional_step(run::Job& job, const model::Step& step, const model::TorsionalStep& law) {
+void run_torsional_step(run::Job& job, const model::Step& step, const model::TorsionalStep& asked) {
+  model::TorsionalStep law = asked;
+  law.orders = model::orders_of(job.model, asked.orders);
   results::FrequencyStep s(job, step, "torsional", "torsional vibration", law.max_speed);
   const run::PhaseTimer timer(job, "modes");
   const std::vector<analysis::WhirlMode> modes = solve(s, law);

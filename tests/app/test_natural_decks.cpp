@@ -632,6 +632,177 @@ speed = {{ values = ["9000 rpm", "10000 rpm"] }}
   EXPECT_NEAR(onset(20), coarse, 2e-4 * coarse);
 }
 
+// A second spool's unbalance has critical speeds of its own: without `orders` they are looked for once a
+// turn of every shaft. Its peaks in the response stand where they are.
+TEST(NaturalDecks, EverySpoolHasItsCriticalSpeeds) {
+  const std::string machine = R"(format = 1
+[output]
+report = false
+[[shaft]]
+name = "lp"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "id[mm]"]
+rows = [["fan", 150, 60, 40], ["core", 550, 60, 40], ["turbine", 150, 60, 40]]
+[[shaft]]
+name = "hp"
+origin = ["200 mm", "0 mm", "0 mm"]
+material = "steel"
+speed_ratio = -1.5
+columns = ["name", "length[mm]", "od[mm]", "id[mm]"]
+rows = [["compressor", 200, 110, 95], ["combustor", 250, 110, 95]]
+[[disk]]
+name = "fan disk"
+at = "lp/fan:mid"
+mass = "12 kg"
+Ip = "0.15 kg.m^2"
+Id = "0.08 kg.m^2"
+[[disk]]
+name = "hp disk"
+at = "hp/compressor:mid"
+mass = "8 kg"
+Ip = "0.08 kg.m^2"
+Id = "0.045 kg.m^2"
+[[bearing]]
+at = "lp/fan:start"
+type = "linear"
+kxx = "5e7 N/m"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+cyy = "2e2 N.s/m"
+czz = "2e2 N.s/m"
+[[bearing]]
+at = "lp/turbine:end"
+type = "linear"
+kyy = "1.5e7 N/m"
+kzz = "1.5e7 N/m"
+cyy = "2e2 N.s/m"
+czz = "2e2 N.s/m"
+[[bearing]]
+at = "hp/compressor:start"
+type = "linear"
+kxx = "5e7 N/m"
+kyy = "3e7 N/m"
+kzz = "3e7 N/m"
+cyy = "2e2 N.s/m"
+czz = "2e2 N.s/m"
+[[bearing]]
+at = "lp/640 mm"
+to = "hp/combustor:end - 10 mm"
+type = "linear"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+cyy = "2e2 N.s/m"
+czz = "2e2 N.s/m"
+[[unbalance]]
+at = "hp disk"
+amount = "50 g.mm"
+[[probe]]
+name = "hp"
+at = "hp disk"
+)";
+  const auto steps = [](const std::string& orders) {
+    return R"([[step]]
+name = "c"
+type = "critical_speeds"
+motion = "lateral"
+max_speed = "12000 rpm"
+)" + orders +
+           R"([[step]]
+name = "d"
+type = "campbell"
+motion = "lateral"
+modes = 6
+speed = { stop = "12000 rpm", points = 13 }
+)" + orders;
+  };
+  const DeckRun plain(machine + steps("") + R"([[step]]
+name = "u"
+type = "unbalance_response"
+speed = { start = "1000 rpm", stop = "10000 rpm", points = 91 }
+)");
+  ASSERT_EQ(plain.exit, 0) << plain.log;
+  EXPECT_TRUE(plain.says("c: 1x: ")) << plain.log;
+  EXPECT_TRUE(plain.says("; 1.5x: ")) << plain.log;
+  const DeckRun asked(machine + steps("orders = [1, 1.5]\n"));
+  ASSERT_EQ(asked.exit, 0) << asked.log;
+  for (const char* table : {"c_damped.csv", "c_undamped.csv", "d_critical_speeds.csv"}) {
+    const Columns a = plain.csv(table), b = asked.csv(table);
+    ASSERT_EQ(a.rows.size(), b.rows.size()) << table;
+    for (std::size_t k = 0; k < a.rows.size(); ++k)
+      for (std::size_t j = 0; j < 3; ++j)
+        EXPECT_TRUE(a.rows[k][j] == b.rows[k][j] || std::isnan(a.rows[k][j])) << table << " " << k;
+  }
+  const Columns criticals = plain.csv("c_damped.csv"), peaks = plain.csv("u_peaks.csv");
+  ASSERT_FALSE(peaks.rows.empty());
+  for (const auto& peak : peaks.rows) {
+    const double speed = peak[peaks.column("speed [rpm]")];
+    double nearest = 1e9;
+    for (const auto& row : criticals.rows)
+      if (row[criticals.column("order [-]")] == 1.5)
+        nearest = std::min(nearest, std::abs(row[criticals.column("speed [rpm]")] - speed));
+    EXPECT_LT(nearest, 0.01 * speed) << speed;
+  }
+}
+
+// An unbalance is an eccentricity of what stands at its node: of a slice of shaft the larger, the finer
+// the mesh. That is no asymmetry of the rotor, for which linear runs are refused.
+TEST(NaturalDecks, AnUnbalanceOnABareShaftIsNoAsymmetry) {
+  const auto deck = [](int elements, const std::string& linear) {
+    return fmt::format(R"(format = 1
+[output]
+report = false
+[model]
+mesh = {{ min_elements_per_section = {} }}
+[[shaft]]
+name = "s"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 50], ["b", 500, 50]]
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[unbalance]]
+at = "a:end"
+amount = "50 g.mm"
+[[probe]]
+name = "p"
+at = "a:end"
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = "3000 rpm"
+[[step]]
+name = "t"
+type = "transient"
+duration = "0.1 s"
+integrator = {{ tolerance = 1e-6 }}
+{})",
+                       elements, linear);
+  };
+  const auto peak = [&](int elements, const std::string& linear) {
+    const DeckRun d(deck(elements, linear));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    if (d.exit != 0) return 0.0;
+    return d.summary("t").at("peaks").at("p").at("amplitude 0-peak [m]").number();
+  };
+  const double general = peak(20, "");
+  EXPECT_GT(general, 1e-7);
+  for (const int elements : {5, 20, 40})
+    EXPECT_NEAR(peak(elements, "linear = true\n"), general, 1e-4 * general) << elements;
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {

@@ -86,10 +86,11 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
 
 namespace {
 
-constexpr const char* orders_doc = "excitation orders: multiples of the speed";
-
-void check_orders(Visitor& v, const std::vector<double>& orders) {
-  if (v.clean() && orders.empty()) v.error("E20", "orders", "at least one order is needed");
+void describe_orders(Visitor& v, std::vector<double>& orders) {
+  const bool given = v.quantities(optional("orders", "once a turn of every shaft"), orders, "",
+                                  positive, -1, "excitation orders: multiples of the speed");
+  if (v.clean() && given && orders.empty())
+    v.error("E20", "orders", "at least one order is needed");
 }
 
 }  // namespace
@@ -252,26 +253,24 @@ void describe(Visitor& v, model::ModalStep& s) {
 void describe(Visitor& v, model::CampbellStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed");
-  v.quantities("orders", s.orders, "", positive, -1, orders_doc);
+  describe_orders(v, s.orders);
   v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive,
              "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
   describe_about(v, s.about);
-  check_orders(v, s.orders);
 }
 
 void describe(Visitor& v, model::CriticalStep& s) {
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
   const bool from = v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed,
                                "rpm", not_negative, "critical speeds from this one on");
-  v.quantities("orders", s.orders, "", positive, -1, orders_doc);
+  describe_orders(v, s.orders);
   v.integer("modes", s.modes, between(1, 10000),
             "critical speeds listed of each order, from the lowest");
   describe_motion(v, s.motion);
   describe_about(v, s.about);
   v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn");
-  check_orders(v, s.orders);
   if (v.clean() && s.min_speed >= s.max_speed)
     v.error("E21", "min_speed", "min_speed is not below max_speed");
   // at standstill itself every free motion is one
@@ -431,9 +430,8 @@ void describe(Visitor& v, model::TorsionalStep& s) {
             "number of torsional modes, from the lowest frequency");
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive,
              "end of the interference diagram");
-  v.quantities("orders", s.orders, "", positive, -1, orders_doc);
+  describe_orders(v, s.orders);
   describe_about(v, s.about);
-  check_orders(v, s.orders);
 }
 
 void describe(Visitor& v, model::BucklingStep& s) {
