@@ -275,14 +275,15 @@ std::string figure_html(const plot::Figure& f, const std::string& id, const std:
   const auto number = numbers.find(id);
   const std::string title =
       (number == numbers.end() ? "" : "Figure " + std::to_string(number->second) + ". ") + f.title;
-  std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" +
-                  escape(title) + "</h3><span class=\"hint\">";
+  std::string s = "<figure id=\"" + id + "\" style=\"width:" + number_text(f.width) +
+                  "px\"><div class=\"bar\"><h3>" + escape(title) + "</h3><span class=\"hint\">";
   s += turns(f) ? "drag turns" : "click, then wheel zooms; drag pans; shift-drag: window";
   s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double "
        "click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // About a column a px, as in print: twice as many doubled the page.
-  s += plot::render_svg(f, {false, id, marks, 0.85});
+  const plot::SvgPair drawn = plot::render_for_page(f, {false, id, marks, 0.85});
+  s += drawn.wide + drawn.narrow;
   if (f.replay) s += replay_html(*f.replay, id);
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";

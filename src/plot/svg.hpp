@@ -16,4 +16,13 @@ struct SvgOptions {
 
 std::string render_svg(const Figure& figure, const SvgOptions& options = {});
 
+/// A figure for a page that is read on a desk and on a telephone.
+struct SvgPair {
+  std::string wide;    ///< as the figure says
+  std::string narrow;  ///< 360 px wide, axes below one another, legends below them
+};
+/// The narrow drawing repeats the curves and maps of the wide one by reference: both must stand in
+/// one page. `options.standalone` must be false.
+SvgPair render_for_page(const Figure& figure, const SvgOptions& options);
+
 }  // namespace whirl::plot

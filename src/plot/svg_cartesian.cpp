@@ -16,7 +16,7 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
     }
     return t;
   }
-  const double target = std::clamp(length / spacing, 2.0, 10.0);
+  const double target = std::clamp(length / spacing, length >= 140 ? 3.0 : 2.0, 10.0);
   if (s.log) return log_ticks(s.lo, s.hi, target);
   if (a.unit == "°" || a.unit == "deg") return angle_ticks(s.lo, s.hi);
   return linear_ticks(s.lo, s.hi, target);
@@ -146,45 +146,90 @@ void look_over(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
 
 void draw_grid(Canvas& c, const Prepared& p, const Box& b) {
   const std::string s = stroke(faint, 0.8);
-  c.add("<g class=\"gx\">");
+  std::vector<Segment> upright, level;
   for (const double v : p.tx.major)
-    c.line(p.x(v), b.y, p.x(v), b.bottom(), s);
-  c.add("</g><g class=\"gy\">");
+    upright.push_back({p.x(v), b.y, p.x(v), b.bottom()});
   for (const double v : p.ty.major)
-    c.line(b.x, p.y(v), b.right(), p.y(v), s);
+    level.push_back({b.x, p.y(v), b.right(), p.y(v)});
+  c.add("<g class=\"gx\">");
+  c.lines(upright, s);
+  c.add("</g><g class=\"gy\">");
+  c.lines(level, s);
   c.add("</g>\n");
+}
+
+/// A tick and its label beside or below an axis.
+struct TickText {
+  double x, y;
+  const std::string* label;
+};
+
+void draw_tick_texts(Canvas& c, const std::vector<TickText>& all, const char* anchor) {
+  const bool page = !c.options.standalone;
+  if (all.empty()) return;
+  if (page) {  // said once
+    c.add("<g font-size=\"" + number_text(tick_size) + "\" text-anchor=\"" + anchor + "\" " +
+          fill(ink) + ">");
+  }
+  for (const TickText& t : all) {
+    if (!page) {
+      c.text(t.x, t.y, *t.label, tick_size, anchor);
+      continue;
+    }
+    c.add("<text x=\"" + number_text(t.x, 1) + "\" y=\"" + number_text(t.y, 1) + "\">" +
+          escape(*t.label) + "</text>");
+  }
+  if (page) c.add("</g>");
+}
+
+/// Below the frame; labels that would touch the one before are left out.
+void draw_x_ticks(Canvas& c, const Prepared& p, const Box& b, bool labels) {
+  std::vector<Segment> marks;
+  std::vector<TickText> texts;
+  double taken = -infinity;
+  for (std::size_t k = 0; k < p.tx.major.size(); ++k) {
+    const double x = p.x(p.tx.major[k]);
+    if (x < b.x - 0.5 || x > b.right() + 0.5) continue;
+    marks.push_back({x, b.bottom(), x, b.bottom() + tick_length});
+    const double half = text_width(p.tx.labels[k], tick_size) / 2;
+    if (!labels || x - half < taken + 3) continue;
+    taken = x + half;
+    texts.push_back({x, b.bottom() + tick_length + 12.5, &p.tx.labels[k]});
+  }
+  for (const double v : p.tx.minor)
+    marks.push_back({p.x(v), b.bottom(), p.x(v), b.bottom() + 2.5});
+  c.lines(marks, stroke(ink, 0.9));
+  draw_tick_texts(c, texts, "middle");
+}
+
+/// Beside the frame.
+void draw_y_ticks(Canvas& c, const Ticks& ticks, const Scale& scale, const Box& b, bool right) {
+  const double x = right ? b.right() : b.x, out = right ? 1 : -1;
+  std::vector<Segment> marks;
+  std::vector<TickText> texts;
+  for (std::size_t k = 0; k < ticks.major.size(); ++k) {
+    const double y = scale(ticks.major[k]);
+    if (y < b.y - 0.5 || y > b.bottom() + 0.5) continue;
+    marks.push_back({x, y, x + out * tick_length, y});
+    texts.push_back({x + out * (tick_length + 3), y + 4, &ticks.labels[k]});
+  }
+  if (!right)
+    for (const double v : ticks.minor)
+      marks.push_back({x - 2.5, scale(v), x, scale(v)});
+  c.lines(marks, stroke(ink, 0.9));
+  draw_tick_texts(c, texts, right ? "start" : "end");
 }
 
 void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const CartesianFlags& f,
                 bool right) {
-  const std::string s = stroke(ink, 0.9);
   c.add("<g class=\"tx\">");
-  for (std::size_t k = 0; k < p.tx.major.size(); ++k) {
-    const double x = p.x(p.tx.major[k]);
-    if (x < b.x - 0.5 || x > b.right() + 0.5) continue;
-    c.line(x, b.bottom(), x, b.bottom() + tick_length, s);
-    if (!f.hide_x) c.text(x, b.bottom() + tick_length + 12.5, p.tx.labels[k], tick_size, "middle");
-  }
-  for (const double v : p.tx.minor)
-    c.line(p.x(v), b.bottom(), p.x(v), b.bottom() + 2.5, s);
+  draw_x_ticks(c, p, b, !f.hide_x);
   c.add("</g><g class=\"ty\">");
-  for (std::size_t k = 0; k < p.ty.major.size(); ++k) {
-    const double y = p.y(p.ty.major[k]);
-    if (y < b.y - 0.5 || y > b.bottom() + 0.5) continue;
-    c.line(b.x - tick_length, y, b.x, y, s);
-    c.text(b.x - tick_length - 3, y + 4, p.ty.labels[k], tick_size, "end");
-  }
-  for (const double v : p.ty.minor)
-    c.line(b.x - 2.5, p.y(v), b.x, p.y(v), s);
+  draw_y_ticks(c, p.ty, p.y, b, false);
   c.add("</g>");
   if (right) {
     c.add("<g class=\"tr\">");
-    for (std::size_t k = 0; k < p.tr.major.size(); ++k) {
-      const double y = p.r(p.tr.major[k]);
-      if (y < b.y - 0.5 || y > b.bottom() + 0.5) continue;
-      c.line(b.right(), y, b.right() + tick_length, y, s);
-      c.text(b.right() + tick_length + 3, y + 4, p.tr.labels[k], tick_size);
-    }
+    draw_y_ticks(c, p.tr, p.r, b, true);
     c.add("</g>");
   }
   c.add("\n<rect class=\"frame ci\" fill=\"none\" stroke=\"#222222\" stroke-width=\"0.9\"");
@@ -194,8 +239,8 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   c.attr("height", b.h);
   c.add("/>\n");
   if (!f.hide_x)
-    c.text(b.x + b.w / 2, b.bottom() + tick_length + 31, axis_title(a.x, p.tx.exponent), label_size,
-           "middle", "data-label=\"x\"");
+    c.text_within(b.w + 40, b.x + b.w / 2, b.bottom() + tick_length + 31,
+                  axis_title(a.x, p.tx.exponent), label_size, "middle", "data-label=\"x\"");
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
     const double size =
@@ -293,7 +338,12 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
   place(p, a, {0, 0, std::max(50.0, width - 90), std::max(40.0, height - 60)});
   const Margins first = margins_about(a, p, f);
   const auto entries = legend_entries(a, resolve_colors(a));
-  const Box size = legend_size_of(entries);
+  const Box size = legend_size_of(entries, f.legend_width);
+  if (f.legend_width > 0) {
+    Margins m = first;
+    if (!entries.empty()) m.bottom += size.h + 4;
+    return m;
+  }
   const auto frame_beside = [&](const Margins& m, double legend) {
     return Box{m.left, m.top, std::max(50.0, width - m.left - m.right - legend),
                std::max(40.0, height - m.top - m.bottom)};
@@ -322,6 +372,17 @@ double left_margin(const Axes& a, const Box& frame) {
   return margins_about(a, p, {}).left;
 }
 
+namespace {
+
+/// The legend below the frame.
+void end_narrow(Canvas& c, const std::vector<LegendEntry>& entries, const Box& legend,
+                const CartesianFlags& f) {
+  draw_legend(c, entries, legend, {}, {}, legend, f.legend_width);
+  c.add("</g>\n");
+}
+
+}  // namespace
+
 void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags& f) {
   const Colors k = resolve_colors(a);
   Prepared p;
@@ -338,7 +399,9 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   if (f.hide_x) c.add(" data-hidex=\"1\"");
   if (!a.x.tick_labels.empty()) c.add(" data-fixed=\"1\"");
   c.add(">\n");
-  if (!a.title.empty()) c.text(b.x, b.y - 9, a.title, title_size, "start", "font-weight=\"600\"");
+  if (!a.title.empty())
+    c.text_within(c.narrow ? narrow_width - b.x - 2 : infinity, b.x, b.y - 9, a.title, title_size,
+                  "start", "font-weight=\"600\"");
   const std::string clip = c.id();
   c.add("<clipPath id=\"" + clip + "\"><rect");
   c.attr("x", b.x);
@@ -352,12 +415,14 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   std::vector<Box> taken;
   const auto entries = legend_entries(a, k);
   const bool outside = f.legend_outside;
-  c.add("<g clip-path=\"url(#" + clip + ")\"><g class=\"plot\">\n");
+  c.add("<g clip-path=\"url(#" + clip + ")\">");
+  PlotGroup plot(c, p.x, p.y, right ? p.r : p.y);
   if (!a.heat.empty()) draw_heat(c, a.heat.front(), p);
   draw_bars_and_patches(c, a, k, p);
   draw_rules(c, a, p, b);
   draw_series(c, a, k, p, seen, pins);
-  c.add("</g>\n<g class=\"pins\">\n");
+  plot.end();
+  c.add("<g class=\"pins\">\n");
   for (const auto& job : pins)
     draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series),
               a.series[job.series].right_axis, job.attributes);
@@ -366,7 +431,9 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
-  const Box size = legend_size_of(entries);
+  const Box size = legend_size_of(entries, f.legend_width);
+  if (f.legend_width > 0)
+    return end_narrow(c, entries, {4, b.bottom() + (f.hide_x ? 6 : 40), size.w, size.h}, f);
   draw_legend(c, entries, b, seen, taken,
               outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
                                          : a.heat.empty() ? 8

@@ -51,6 +51,79 @@ void Canvas::line(double x0, double y0, double x1, double y1, std::string_view r
   out += "/>";
 }
 
+void Canvas::text_within(double width, double x, double y, std::string_view content, double size,
+                         const char* anchor, std::string_view extra) {
+  const double wanted = wide_fonts * text_width(content, size);
+  text(x, y, content, size * std::clamp(width / std::max(1.0, wanted), 0.65, 1.0), anchor, extra);
+}
+
+void Canvas::lines(const std::vector<Segment>& all, std::string_view rest) {
+  if (options.standalone) {
+    for (const Segment& s : all)
+      line(s.x0, s.y0, s.x1, s.y1, rest);
+    return;
+  }
+  if (all.empty()) return;
+  out += "<path ";
+  out += rest;
+  out += " d=\"";
+  for (const Segment& s : all) {
+    out += 'M';
+    append_number(out, s.x0, 1);
+    out += ' ';
+    append_number(out, s.y0, 1);
+    out += s.y0 == s.y1 ? 'H' : s.x0 == s.x1 ? 'V' : 'L';
+    if (s.y0 == s.y1 || s.x0 != s.x1) append_number(out, s.x1, 1);
+    if (s.y0 != s.y1 && s.x0 != s.x1) out += ' ';
+    if (s.y0 != s.y1) append_number(out, s.y1, 1);
+  }
+  out += "\"/>";
+}
+
+namespace {
+
+/// What a scale of a second drawing makes of px of the first: factor and offset.
+struct Stretch {
+  double factor = 1, offset = 0;
+  bool is(const Stretch& o) const {
+    return std::abs(factor - o.factor) < 1e-3 && std::abs(offset - o.offset) < 0.2;
+  }
+};
+
+Stretch stretch(const Scale& from, const Scale& to) {
+  Stretch s;
+  s.factor = (to(from.hi) - to(from.lo)) / (from.p1 - from.p0);
+  s.offset = to(from.lo) - s.factor * from.p0;
+  return s;
+}
+
+}  // namespace
+
+PlotGroup::PlotGroup(Canvas& c, const Scale& x, const Scale& y, const Scale& right) : c_(c) {
+  c.add("<g class=\"plot\"");
+  if (c.drawn && !c.narrow) {
+    c.drawn->push_back({c.id(), x, y, right});
+    c.add(" id=\"" + c.drawn->back().id + "\"");
+  }
+  c.add(">\n");
+  from_ = c.out.size();
+  if (!c.narrow || !c.drawn || c.plots >= c.drawn->size()) return;
+  const DrawnPlot& first = (*c.drawn)[c.plots++];
+  const Stretch sx = stretch(first.x, x), sy = stretch(first.y, y);
+  if (!sy.is(stretch(first.right, right))) return;
+  repeated_ = "<use class=\"again\" href=\"#" + first.id + "\" transform=\"matrix(" +
+              number_text(sx.factor, 5) + " 0 0 " + number_text(sy.factor, 5) + ' ' +
+              number_text(sx.offset) + ' ' + number_text(sy.offset) + ")\"/>\n";
+}
+
+void PlotGroup::end() {
+  if (!repeated_.empty()) {
+    c_.out.resize(from_);
+    c_.add(repeated_);
+  }
+  c_.add("</g>\n");
+}
+
 namespace {
 
 std::string color_class(char kind, int color) {

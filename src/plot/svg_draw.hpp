@@ -34,11 +34,24 @@ struct Point {
   double x, y;
 };
 
+/// Curves of one of the axes of a drawing, and their scales: a second drawing repeats them.
+struct DrawnPlot {
+  std::string id;
+  Scale x, y, right;
+};
+
+struct Segment {
+  double x0, y0, x1, y1;
+};
+
 struct Canvas {
   std::string out;
   const Figure& figure;
   const SvgOptions& options;
-  std::string prefix;  ///< id of the picture
+  std::string prefix;               ///< id of the picture
+  std::vector<DrawnPlot>* drawn{};  ///< written by the first drawing of two, read by the second
+  bool narrow = false;              ///< the second of two
+  std::size_t plots = 0;            ///< of `drawn`, met so far
   int ids = 0;
   std::string id() {
     return (options.marks.empty() ? prefix : options.marks) + "-" + std::to_string(++ids);
@@ -48,7 +61,26 @@ struct Canvas {
   void attr(const char* name, double v);
   void text(double x, double y, std::string_view content, double size, const char* anchor = "start",
             std::string_view extra = {});
+  /// No wider than `width`, if need be in smaller letters.
+  void text_within(double width, double x, double y, std::string_view content, double size,
+                   const char* anchor, std::string_view extra = {});
   void line(double x0, double y0, double x1, double y1, std::string_view rest);
+  /// Lines of one look; in a page they are one path.
+  void lines(const std::vector<Segment>& all, std::string_view rest);
+};
+
+/// The group of the curves, maps and bodies of some axes. In the second drawing of two it is that of
+/// the first, moved and stretched, where one stretch suits all its scales.
+class PlotGroup {
+ public:
+  /// right: y where there is no right axis.
+  PlotGroup(Canvas& c, const Scale& x, const Scale& y, const Scale& right);
+  void end();
+
+ private:
+  Canvas& c_;
+  std::string repeated_;  ///< instead of what is drawn; empty: that
+  std::size_t from_ = 0;
 };
 
 inline constexpr double tick_size = 11.5, label_size = 12.5, title_size = 13.5, legend_size = 11.5,
@@ -93,15 +125,16 @@ struct LegendEntry {
   bool patch = false, bar = false;
 };
 std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k);
-/// Size of the legend box.
-Box legend_size_of(const std::vector<LegendEntry>& entries);
+/// Size of the legend box: one column, or as many as the width given (of a narrow drawing) takes.
+Box legend_size_of(const std::vector<LegendEntry>& entries, double width = 0);
 /// Whether every place inside the frame hides some of `seen` or `taken`.
 bool legend_hides(const std::vector<LegendEntry>& entries, const Box& frame,
                   const std::vector<Point>& seen, const std::vector<Box>& taken);
 /// Draws it where it hides the fewest of `seen` inside the frame, or at `outside` when its width is
-/// positive.
+/// positive. width: as of legend_size_of().
 void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
-                 const std::vector<Point>& seen, const std::vector<Box>& taken, const Box& outside);
+                 const std::vector<Point>& seen, const std::vector<Box>& taken, const Box& outside,
+                 double width = 0);
 
 /// Range of cartesian or polar data, with margins; what the axis fixes stays.
 void data_range(const Axes& a, Scale& x, Scale& y, Scale& right);
@@ -146,7 +179,10 @@ struct Margins {
 struct CartesianFlags {
   bool hide_x = false;
   bool legend_outside = false;
+  double legend_width = 0;  ///< of a narrow drawing: the legend stands below, so wide
 };
+inline constexpr double narrow_width = 360;  ///< px, of the drawing for telephones
+inline constexpr double narrow_legend_width = 352;
 /// Also decides where the legend stands.
 Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f);
 /// Of a frame that stands: its ticks may have wider labels than those reckoned with.

@@ -26,12 +26,32 @@ std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k) {
   return e;
 }
 
-Box legend_size_of(const std::vector<LegendEntry>& entries) {
-  if (entries.empty()) return {};
+namespace {
+
+/// Of the widest entry, px.
+double entry_width(const std::vector<LegendEntry>& entries, double width) {
   double w = 0;
   for (const auto& e : entries)
     w = std::max(w, wide_fonts * text_width(e.label, legend_size));
-  return {0, 0, w + sample + 2 * pad + 6, row * static_cast<double>(entries.size()) + 2 * pad - 4};
+  w += sample + 6;
+  return width > 0 ? std::min(w, width - 2 * pad) : w;
+}
+
+std::size_t columns_of(const std::vector<LegendEntry>& entries, double width) {
+  constexpr double apart = 10;
+  const double free = width - 2 * pad + apart, each = entry_width(entries, width) + apart;
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1.0, free / each)), 1,
+                                 std::max<std::size_t>(1, entries.size()));
+}
+
+}  // namespace
+
+Box legend_size_of(const std::vector<LegendEntry>& entries, double width) {
+  if (entries.empty()) return {};
+  const double w = entry_width(entries, width);
+  const std::size_t columns = columns_of(entries, width);
+  const std::size_t rows = (entries.size() + columns - 1) / columns;
+  return {0, 0, columns > 1 ? width : w + 2 * pad, row * static_cast<double>(rows) + 2 * pad - 4};
 }
 
 namespace {
@@ -94,7 +114,7 @@ void draw_entry(Canvas& c, const LegendEntry& e, const Box& b, double y) {
       draw_pins(c, {(x0 + x1) / 2}, {y}, s, e.color, e.series, false, " data-legend=\"1\"");
     }
   }
-  c.text(x1 + 6, y + 4, e.label, legend_size);
+  c.text_within(b.right() - x1 - 6, x1 + 6, y + 4, e.label, legend_size, "start");
   c.add("</g>\n");
 }
 
@@ -109,10 +129,10 @@ bool legend_hides(const std::vector<LegendEntry>& entries, const Box& frame,
 }
 
 void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
-                 const std::vector<Point>& seen, const std::vector<Box>& taken,
-                 const Box& outside) {
+                 const std::vector<Point>& seen, const std::vector<Box>& taken, const Box& outside,
+                 double width) {
   if (entries.empty()) return;
-  Box b = legend_size_of(entries);
+  Box b = legend_size_of(entries, width);
   if (outside.w > 0) {
     b.x = outside.x;
     b.y = outside.y;
@@ -123,10 +143,11 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
   c.add(
       " class=\"fp cg\" fill=\"#ffffff\" fill-opacity=\"0.88\" stroke=\"#d9d9d9\" "
       "stroke-width=\"0.7\"/>\n");
-  double y = b.y + pad + row / 2 - 2;
-  for (const LegendEntry& e : entries) {
-    draw_entry(c, e, b, y);
-    y += row;
+  const std::size_t columns = columns_of(entries, width);
+  const double each = b.w / static_cast<double>(columns), first = b.y + pad + row / 2 - 2;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Box column{b.x + each * static_cast<double>(i % columns), b.y, each, b.h};
+    draw_entry(c, entries[i], column, first + row * static_cast<double>(i / columns));
   }
   c.add("</g>\n");
 }

@@ -46,7 +46,7 @@ PolarDrawing::PolarDrawing(Canvas& c, const Axes& a, const Box& cell)
       cell_(cell),
       colors_(resolve_colors(a)),
       entries_(legend_entries(a, colors_)),
-      legend_(legend_size_of(entries_)) {
+      legend_(legend_size_of(entries_, c.narrow ? narrow_legend_width : 0)) {
   const double largest = largest_radius();
   ticks_ = linear_ticks(0, largest * 1.02, 4);
   step_ = ticks_.major.size() > 1 ? ticks_.major[1] - ticks_.major[0] : largest;
@@ -58,7 +58,7 @@ PolarDrawing::PolarDrawing(Canvas& c, const Axes& a, const Box& cell)
   // the legend beside the circle or below it, where it leaves more of it
   const double right = entries_.empty() ? 0 : legend_.w + 10,
                below = entries_.empty() ? 0 : legend_.h + 8;
-  legend_below_ = radius(0, below) > radius(right, 0);
+  legend_below_ = c.narrow || radius(0, below) > radius(right, 0);
   R_ = legend_below_ ? radius(0, below) : radius(right, 0);
   cx_ = cell.x + (cell.w - (legend_below_ ? 0 : right)) / 2;
   cy_ = cell.y + top_ + 20 + R_;
@@ -140,19 +140,22 @@ void PolarDrawing::draw() {
   begin();
   c_.add("<g class=\"gx\">");
   draw_grid();
-  c_.add("</g>\n<g class=\"plot\">\n");
+  c_.add("</g>\n");
+  const Scale right_of_middle{0, 1, false, cx_, cx_ + R_}, below{0, 1, false, cy_, cy_ + R_};
+  PlotGroup plot(c_, right_of_middle, below, below);
   for (std::size_t i = 0; i < a_.series.size(); ++i)
     draw_curve(i);
-  c_.add("</g>\n");
+  plot.end();
   draw_radii();
   const Box inside{cx_ - R_ - 30, cy_ - R_, 2 * R_ + 60, 2 * R_};
   for (const auto& n : a_.notes)
     draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken_, seen_);
-  c_.text(cx_, cy_ + R_ + 40, axis_title(a_.y, ticks_.exponent) + ", " + a_.x.label, label_size,
-          "middle");
+  c_.text_within(cell_.w - 8, cx_, cy_ + R_ + 40,
+                 axis_title(a_.y, ticks_.exponent) + ", " + a_.x.label, label_size, "middle");
   const Point corner = legend_below_ ? Point{cx_ - legend_.w / 2, cy_ + R_ + 48}
                                      : Point{cell_.right() - legend_.w, cell_.y + top_};
-  draw_legend(c_, entries_, cell_, seen_, {}, {corner.x, corner.y, legend_.w, legend_.h});
+  draw_legend(c_, entries_, cell_, seen_, {}, {corner.x, corner.y, legend_.w, legend_.h},
+              c_.narrow ? narrow_legend_width : 0);
   c_.add("</g>\n");
 }
 

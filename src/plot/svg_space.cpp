@@ -121,6 +121,8 @@ class SpaceDrawing {
   const std::array<Scale, 3> scale_;
   const Projection view_;
   const double top_;
+  const std::vector<LegendEntry> entries_;
+  const Box legend_;
   const Box box_;
   double unit_ = 1, cx_ = 0, cy_ = 0;  ///< px a unit of the box, and where its middle stands
   std::array<double, 3> back_{};       ///< where the faces behind the data stand
@@ -138,7 +140,10 @@ SpaceDrawing::SpaceDrawing(Canvas& c, const Axes& a, const Box& cell)
       scale_(scales_of(a)),
       view_(a.view),
       top_(a.title.empty() ? 6 : 26),
-      box_{cell.x + 56, cell.y + top_ + 2, cell.w - 112, cell.h - top_ - 48} {
+      entries_(legend_entries(a, colors_)),
+      legend_(legend_size_of(entries_, c.narrow ? narrow_legend_width : 0)),
+      box_{cell.x + (c.narrow ? 40 : 56), cell.y + top_ + 2, cell.w - (c.narrow ? 70 : 112),
+           cell.h - top_ - 48 - (c.narrow ? legend_.h : 0)} {
   fit();
   const Vec3 towards(view_.ca * view_.ce, view_.sa * view_.ce, view_.se);
   for (std::size_t d = 0; d < 3; ++d) {
@@ -166,6 +171,7 @@ void SpaceDrawing::fit() {
 void SpaceDrawing::begin() {
   c_.add("<g class=\"axes\" data-kind=\"space\" data-box=\"" + number_text(box_.x) + " " +
          number_text(box_.y) + " " + number_text(box_.w) + " " + number_text(box_.h) +
+         "\" data-cell=\"" + number_text(cell_.x) + " " + number_text(cell_.right()) +
          "\" data-view=\"" + number_text(a_.view[0]) + " " + number_text(a_.view[1]) +
          "\" data-half=\"" + number_text(scale_[0].p1, 4) + " " + number_text(scale_[1].p1, 4) +
          " " + number_text(scale_[2].p1, 4) + '"');
@@ -179,6 +185,11 @@ void SpaceDrawing::begin() {
 
 /// The three faces of the box behind the data, with their grids.
 void SpaceDrawing::draw_faces() {
+  std::vector<Segment> grid, edges;
+  const auto add = [this](std::vector<Segment>& to, const Vec3& p, const Vec3& q) {
+    const Point m = px(p), n = px(q);
+    to.push_back({m.x, m.y, n.x, n.y});
+  };
   for (Index d = 0; d < 3; ++d) {
     const Index u = (d + 1) % 3, v = (d + 2) % 3;  // grid lines of u and v on the back face of d
     Vec3 p, q;
@@ -189,14 +200,16 @@ void SpaceDrawing::draw_faces() {
       q[j] = scale_[at(j)].p1;
       for (const double tick : ticks_[at(i)].major) {
         p[i] = q[i] = along(tick);
-        segment(p, q, stroke(faint, 0.8));
+        add(grid, p, q);
       }
       for (const double edge : {along.p0, along.p1}) {
         p[i] = q[i] = edge;
-        segment(p, q, stroke(faint, 1.2));
+        add(edges, p, q);
       }
     }
   }
+  c_.lines(grid, stroke(faint, 0.8));
+  c_.lines(edges, stroke(faint, 1.2));
 }
 
 /// Labels stand along the edge on the outline: for x and y the lower one nearest the reader, for z
@@ -280,9 +293,14 @@ void SpaceDrawing::draw_axis(Index d) {
     const double x = edge.middle.x + reach * edge.ox - 6, y = edge.middle.y;
     c_.text(x, y, title, label_size, "middle",
             "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
-  } else
-    c_.text(edge.middle.x + reach * edge.ox, edge.middle.y + reach * edge.oy + 6, title, label_size,
-            anchor_of(edge.ox));
+    return;
+  }
+  const char* anchor = anchor_of(edge.ox);
+  const double width = wide_fonts * text_width(title, label_size);
+  const double before = width * (anchor[0] == 's' ? 0.0 : anchor[0] == 'e' ? 1.0 : 0.5);
+  const double first = cell_.x + 2 + before, last = cell_.right() - 2 - width + before;
+  c_.text(std::max(first, std::min(last, edge.middle.x + reach * edge.ox)),
+          edge.middle.y + reach * edge.oy + 6, title, label_size, anchor);
 }
 
 /// Real and imaginary parts in units of the box.
@@ -348,14 +366,16 @@ void SpaceDrawing::draw() {
   draw_faces();
   for (Index d = 0; d < 3; ++d)
     draw_axis(d);
-  c_.add("</g>\n<g class=\"plot\">\n");
+  c_.add("</g>\n");
+  const Scale right_of_middle{0, 1, false, cx_, cx_ + unit_}, below{0, 1, false, cy_, cy_ + unit_};
+  PlotGroup plot(c_, right_of_middle, below, below);
   for (std::size_t i = 0; i < a_.space.size(); ++i)
     draw_curve(i);
-  c_.add("</g>\n");
-  const std::vector<LegendEntry> entries = legend_entries(a_, colors_);
-  const Box size = legend_size_of(entries);
-  draw_legend(c_, entries, cell_, seen_, {},
-              {cell_.right() - size.w - 4, cell_.y + top_, size.w, size.h});
+  plot.end();
+  const double x = c_.narrow ? cell_.x + 4 : cell_.right() - legend_.w - 4;
+  const double y = c_.narrow ? cell_.bottom() - legend_.h - 2 : cell_.y + top_;
+  draw_legend(c_, entries_, cell_, seen_, {}, {x, y, legend_.w, legend_.h},
+              c_.narrow ? narrow_legend_width : 0);
   c_.add("</g>\n");
 }
 

@@ -14,6 +14,11 @@ for f in summary.json resolved.toml report.html run.json; do
 done
 if grep -qE '(src|href)="https?:' "$results/report.html"; then echo "report needs the network"; exit 1; fi
 bad=0
+# fifty figures, each drawn for desks and for telephones, are still sent by mail
+if [[ $deck == *02_run_up* ]] && [ "$(stat -c %s "$results/report.html")" -ge 1500000 ]; then
+  echo "report of $(stat -c %s "$results/report.html") bytes"
+  bad=1
+fi
 # figures as a reader sees them: nothing leaves its axes, no text stands on another
 if command -v python3 >/dev/null && [ -d "$results/plots" ]; then
   python3 "$(dirname "$0")/check_figures.py" "$results/plots" || bad=1

@@ -3,7 +3,9 @@
 window.addEventListener("load", () => {
   const wrong = [...window.faults];
   const check = (ok, what) => { if (!ok) wrong.push(what); };
-  const svg = (id) => document.getElementById(id);
+  // Of the two drawings of a figure, and of what belongs to them, the one that is seen.
+  const seen = (root, what) => [...root.querySelectorAll(what)].find((e) => e.getClientRects().length);
+  const svg = (id) => seen(document.getElementById(id), "svg.figure");
   const readout = document.getElementById("readout");
   const at = (s, x, y) => { const m = s.getScreenCTM(); return { clientX: m.a * x + m.e, clientY: m.d * y + m.f }; };
   const fire = (s, type, x, y, more = {}) => s.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true, pointerId: 1, button: 0, ...at(s, x, y), ...more }));
@@ -70,8 +72,8 @@ window.addEventListener("load", () => {
   check(same(d0, path.getAttribute("d")), "it does not turn back");
 
   // A shape moves: half a cycle on, the deflection is the other way round; reset brings it back.
-  const button = (id) => svg(id).closest("figure").querySelector("[data-do=play]");
-  const shape = window.whirlFigures.find((f) => f.svg.id === "machine_shape"), shaft = svg("machine_shape").querySelector("path[data-name=rotor]");
+  const button = (id) => seen(svg(id).closest("figure"), "[data-do=play]");
+  const shape = window.whirlFigures.find((f) => f.svg === svg("machine_shape")), shaft = svg("machine_shape").querySelector("path[data-name=rotor]");
   check(button("machine_shape") && button("mode") && !button("bode"), "play buttons");
   const home = shaft.getAttribute("d");
   shape.axes[0].setPhase(Math.PI);
@@ -84,7 +86,7 @@ window.addEventListener("load", () => {
   check(same(home, shaft.getAttribute("d")), "reset leaves the shape in motion");
 
   // A replay: it shows what was drawn, the slider sets moment and orbit.
-  const run = svg("replay").closest("figure"), slider = run.querySelector("input[type=range]"), said = () => run.querySelector("output").textContent;
+  const run = svg("replay").closest("figure"), slider = seen(run, "input[type=range]"), said = () => seen(run, "output").textContent;
   check(slider && slider.value === "9" && button("replay"), "replay has its slider");
   check(said() === "4.5 s, 6000 rpm, largest 100 µm", "replay says: " + said());
   const rod = svg("replay").querySelector("path[data-name=rod]"), last = rod.getAttribute("d");

@@ -225,7 +225,7 @@
     valueY(py, a = this.y) { return a.at((this.by + this.bh - (py - this.ty) / this.sy) / this.bh); }
     ticks() {
       const pick = (a, lo, hi, length, gap) => {
-        const target = Math.max(2, Math.min(10, length / (this.equal ? 68 : gap)));
+        const target = Math.max(length >= 140 ? 3 : 2, Math.min(10, length / (this.equal ? 68 : gap)));
         if (a.log) return logTicks(lo, hi, target);
         if (a.unit === "°" && hi - lo > 40) { const s = hi - lo <= 120 ? 15 : hi - lo <= 200 ? 30 : hi - lo <= 400 ? 90 : 180; return linearTicks(lo, hi, (hi - lo) / s, [[s / 10 ** Math.floor(Math.log10(s)), 5]]); }
         return linearTicks(lo, hi, target);
@@ -315,6 +315,7 @@
       [this.bx, this.by, this.bw, this.bh] = numbers(g.dataset.box);
       this.axis = ["x", "y", "z"].map((n) => scaleOf(g, n));
       this.half = numbers(g.dataset.half);
+      this.cell = numbers(g.dataset.cell);
       this.home = numbers(g.dataset.view);
       this.items = [...g.querySelectorAll("[data-xyz]")].map((el) => ({
         el, s: el.dataset.s, name: el.dataset.name || "", quiet: "quiet" in el.dataset, pins: "pins" in el.dataset,
@@ -384,7 +385,9 @@
           widest = Math.max(widest, 6.4 * ticks[d].labels[k].length);
         });
         const reach = 16 + Math.abs(ox) * widest + 12 * Math.abs(oy), name = esc(title(this.axis[d].label, this.axis[d].unit, ticks[d].exponent));
-        const x = mid[0] + reach * ox - (d === 2 ? 6 : 0), y = mid[1] + (d === 2 ? 0 : reach * oy + 6);
+        const before = 7 * name.length * (anchor === "start" ? 0 : anchor === "end" ? 1 : 0.5), [left, right] = this.cell;
+        const x = d === 2 ? mid[0] + reach * ox - 6 : Math.max(left + 2 + before, Math.min(right - 2 - 7 * name.length + before, mid[0] + reach * ox));
+        const y = mid[1] + (d === 2 ? 0 : reach * oy + 6);
         s += d === 2 ? `<text x="${n2(x)}" y="${n2(y)}" font-size="12.5" text-anchor="middle" class="fi" transform="rotate(-90 ${n2(x)} ${n2(y)})">${name}</text>`
                      : `<text x="${n2(x)}" y="${n2(y)}" font-size="12.5" text-anchor="${anchor}" class="fi">${name}</text>`;
       }
@@ -437,6 +440,37 @@
     }
   }
 
+  // The curves of a narrow drawing are those of the wide one, repeated: alive it has its own.
+  function ownCurves(svg) {
+    for (const use of svg.querySelectorAll("use.again")) {
+      const [sx, , , sy, tx, ty] = numbers(use.getAttribute("transform").slice(7, -1));
+      const X = (v) => n2(sx * v + tx), Y = (v) => n2(sy * v + ty), group = use.parentElement;
+      group.innerHTML = document.querySelector(use.getAttribute("href")).innerHTML;
+      for (const p of group.querySelectorAll("path")) {
+        if (p.closest("defs")) continue;
+        const d = p.getAttribute("d");
+        if (/[HV]/.test(d)) {   // a rule
+          p.setAttribute("d", d.replace(/([MHV])([^MHV]*)/g, (all, c, rest) => c + pathNumbers(rest).map((v, i) => (c === "V" || i ? Y(v) : X(v))).join(" ")));
+          continue;
+        }
+        let to = "", pen = 0;
+        const q = pointsOf(p);
+        for (let i = 0; i < q.length; i += 2) {
+          if (isNaN(q[i])) { pen = 0; continue; }
+          to += (pen === 0 ? "M" : pen === 1 ? "L" : " ") + X(q[i]) + " " + Y(q[i + 1]);
+          if (++pen === 1 && !(i + 3 < q.length && !isNaN(q[i + 2]))) to += "h0";   // a lone point
+        }
+        p.setAttribute("d", to + (d.endsWith("Z") ? "Z" : ""));
+      }
+      for (const r of group.querySelectorAll("rect, image, use")) {
+        if (r.closest("defs")) continue;
+        const g = (k) => +r.getAttribute(k);
+        const now = { x: X(g("x")), y: Y(g("y")), width: n2(sx * g("width")), height: n2(sy * g("height")) };
+        for (const k in now) if (r.hasAttribute(k)) r.setAttribute(k, now[k]);
+      }
+    }
+  }
+
   // Takes the zoom out of the transform and into the coordinates: not every program scales strokes apart.
   function flatten(plot) {
     const [sx, , , sy, tx, ty] = plot.getAttribute("transform").match(/-?[\d.]+(?:e-?\d+)?/g).map(Number);
@@ -460,9 +494,10 @@
 
   // Calls draw(seconds since the last call) until told to stop; a button of the figure starts and stops it.
   class Player {
-    constructor(bar, title, draw) {
+    constructor(bar, title, draw, drawing) {
       this.draw = draw, this.running = false;
       this.button = document.createElement("button");
+      this.button.className = drawing;
       this.button.title = title;
       this.button.dataset.do = "play";
       this.button.addEventListener("click", () => this.toggle());
@@ -487,15 +522,15 @@
   }
 
   // A mode or an operating shape: two seconds a cycle.
-  function animate(axes, bar) {
+  function animate(axes, bar, drawing) {
     let phase = 0;
-    const player = new Player(bar, "the shape in motion", (dt) => { phase = (phase + Math.PI * dt) % (2 * Math.PI); for (const a of axes) a.setPhase(phase); });
+    const player = new Player(bar, "the shape in motion", (dt) => { phase = (phase + Math.PI * dt) % (2 * Math.PI); for (const a of axes) a.setPhase(phase); }, drawing);
     return { stop() { player.toggle(false), (phase = 0); for (const a of axes) a.setPhase(0); } };
   }
 
   // A transient, from the moments the run kept: the slider sets the time, and the lines go through a turn at each moment.
   class Replay {
-    constructor(axes, data, figure, bar) {
+    constructor(axes, data, svg, bar, drawing) {
       Object.assign(this, data);
       this.axes = axes;
       const bin = atob(this.bytes);
@@ -506,9 +541,9 @@
       this.unit = [0, 1, 2].map(unit);
       this.home = [0, 1, 2].map((d) => axes.axis[d].lo);
       const row = document.createElement("div");
-      row.className = "replay-bar";
+      row.className = "replay-bar " + drawing;
       row.innerHTML = `<input type="range" min="0" max="${this.t.length - 1}" value="${this.moment}" aria-label="time"><output></output>`;
-      figure.querySelector("svg").after(row);
+      svg.after(row);
       [this.slider, this.output] = row.children;
       this.slider.addEventListener("input", () => { this.moment = +this.slider.value; this.draw(); });
       let held = 0;
@@ -517,7 +552,7 @@
         if (held >= 1) held = 0, this.moment = (this.moment + 1) % this.t.length, this.slider.value = this.moment;
         this.sample = Math.min(this.samples - 1, Math.floor(held * this.samples));
         this.draw();
-      });
+      }, drawing);
       this.draw();
     }
     // Of a point at a sample of the present moment, in box units.
@@ -554,9 +589,12 @@
 
   // ---------------------------------------------------------------- a figure
 
+  const onPaper = { 0: "#0072b2", 1: "#d55e00", 2: "#009e73", 3: "#aa4499", 4: "#e69f00", 5: "#56b4e9", 6: "#882255", 7: "#666666", i: "#222222", g: "#d9d9d9" };
+
   class Figure {
     constructor(svg) {
       this.svg = svg;
+      ownCurves(svg);
       const make = { xy: PlaneAxes, polar: PolarAxes, space: SpaceAxes };
       this.axes = [...svg.querySelectorAll("g.axes")].map((g) => new make[g.dataset.kind](g));
       const column = new Map();
@@ -577,12 +615,15 @@
       for (const a of this.axes) for (const entry of a.g.querySelectorAll(".legend .entry")) entry.addEventListener("click", (e) => this.toggle(a, entry, e.shiftKey));
       const bar = svg.closest("figure")?.querySelector(".bar");
       bar?.querySelector("[data-do=reset]")?.addEventListener("click", () => this.reset());
-      bar?.querySelector("[data-do=save]")?.addEventListener("click", () => this.save());
+      bar?.querySelector("[data-do=save]")?.addEventListener("click", () => this.shown && this.save());
       const moving = this.axes.filter((a) => a instanceof SpaceAxes && a.moves);
-      if (bar && moving.length) this.motion = animate(moving, bar);
+      const drawing = svg.classList.contains("narrow") ? "narrow" : "wide";
+      if (drawing === "narrow") for (const a of this.axes) if (a instanceof SpaceAxes) a.apply();   // the other may stand turned
+      if (bar && moving.length) this.motion = animate(moving, bar, drawing);
       const replay = svg.parentElement?.querySelector("script.replay");
-      if (bar && replay) this.motion = new Replay(this.axes[0], JSON.parse(replay.textContent), svg.parentElement, bar);
+      if (bar && replay) this.motion = new Replay(this.axes[0], JSON.parse(replay.textContent), svg, bar, drawing);
     }
+    get shown() { return this.svg.getClientRects().length > 0; }
     at(e) {
       const m = this.svg.getScreenCTM().inverse();
       return { x: m.a * e.clientX + m.e, y: m.d * e.clientY + m.f };
@@ -678,13 +719,20 @@
       const paper = document.createElementNS(NS, "rect");
       for (const [k, v] of [["width", "100%"], ["height", "100%"], ["fill", "#ffffff"]]) paper.setAttribute(k, v);
       copy.prepend(paper);
-      // Ticks drawn here have their colour from the page's style sheet only.
-      copy.querySelectorAll(".ci:not([stroke])").forEach((el) => el.setAttribute("stroke", "#222222"));
-      copy.querySelectorAll(".cg:not([stroke])").forEach((el) => el.setAttribute("stroke", "#d9d9d9"));
+      // Colours come from the page's style sheet: those of paper go into the file.
+      copy.setAttribute("font-family", "Helvetica, Arial, sans-serif");
+      copy.querySelectorAll("[class]").forEach((el) => {
+        for (const c of el.classList) {
+          const color = onPaper[c.slice(1)];
+          if (/^c.$/.test(c) && color) el.setAttribute("stroke", color), el.matches(".fp, .hp") || el.setAttribute("fill", "none");
+          if (/^f.$/.test(c) && color) el.setAttribute("fill", color);
+          if (c === "fp" || c === "hp") el.setAttribute("fill", "#ffffff");
+        }
+      });
       copy.querySelectorAll(".plot[transform]").forEach(flatten);
       const link = document.createElement("a");
       link.href = URL.createObjectURL(new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" }));
-      link.download = this.svg.id + ".svg";
+      link.download = (this.svg.closest("figure")?.id || this.svg.id) + ".svg";
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     }
@@ -693,5 +741,15 @@
   // On a narrow screen the contents would come before everything else.
   if (innerWidth < 1080) document.querySelector("nav > details")?.removeAttribute("open");
 
-  window.whirlFigures = [...document.querySelectorAll("svg.figure")].map((svg) => new Figure(svg));
+  // The narrow drawings come alive when the screen first is narrow.
+  window.whirlFigures = [...document.querySelectorAll("svg.figure:not(.narrow)")].map((svg) => new Figure(svg));
+  const telephone = matchMedia("screen and (max-width: 600px)");
+  let alive = false;
+  const awake = () => {
+    if (!telephone.matches || alive) return;
+    alive = true;
+    window.whirlFigures.push(...[...document.querySelectorAll("svg.figure.narrow")].map((svg) => new Figure(svg)));
+  };
+  awake();
+  telephone.addEventListener("change", awake);
 })();
