@@ -66,6 +66,24 @@ void widen_left(Grid& g, const Figure& figure) {
     }
 }
 
+/// When all frames stand: a key makes the drawing higher, not its frames lower.
+void add_notes(Grid& g, const Figure& figure) {
+  std::vector<double> keys(g.rows, 0.0);
+  for (std::size_t i = 0; i < figure.axes.size(); ++i) {
+    if (figure.axes[i].kind != AxesKind::cartesian) continue;
+    const Margins& m = g.column[i % g.columns];
+    const Box frame{m.left, 0, g.cell_w - m.left - m.right, g.height[i / g.columns]};
+    CartesianFlags& f = g.flags[i];
+    f.notes = plan_notes(figure.axes[i], frame);
+    double& key = keys[i / g.columns];
+    key = std::max(key, key_height(f.notes, f.legend_width > 0 ? f.legend_width : frame.w));
+  }
+  for (std::size_t r = 0; r < g.rows; ++r) {
+    g.row_bottom[r] += keys[r];
+    g.total += keys[r];
+  }
+}
+
 Grid lay_out(const Figure& figure, double top) {
   Grid g;
   g.columns = static_cast<std::size_t>(std::max(1, figure.columns));
@@ -82,6 +100,7 @@ Grid lay_out(const Figure& figure, double top) {
   for (const double w : weight)
     g.height.push_back(std::max(10.0, free * w / total));
   widen_left(g, figure);
+  add_notes(g, figure);
   return g;
 }
 
@@ -119,6 +138,7 @@ Grid lay_out_narrow(const Figure& figure, double top) {
     g.total += g.height[i] + g.row_top[i] + g.row_bottom[i];
   }
   widen_left(g, figure);
+  add_notes(g, figure);
   return g;
 }
 

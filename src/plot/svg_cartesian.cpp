@@ -365,6 +365,17 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
   return m;
 }
 
+NotePlan plan_notes(const Axes& a, const Box& frame) {
+  if (a.notes.empty()) return {};
+  Prepared p;
+  data_range(a, p.x, p.y, p.r);
+  place(p, a, frame);
+  std::vector<Point> seen;
+  look_over(a, p, seen);
+  add_bodies(a, p, seen);
+  return place_notes(a, p, frame, seen);
+}
+
 double left_margin(const Axes& a, const Box& frame) {
   Prepared p;
   data_range(a, p.x, p.y, p.r);
@@ -374,11 +385,20 @@ double left_margin(const Axes& a, const Box& frame) {
 
 namespace {
 
-/// The legend below the frame.
-void end_narrow(Canvas& c, const std::vector<LegendEntry>& entries, const Box& legend,
+/// Below the frame: the legend of a narrow drawing, and the key.
+void draw_below(Canvas& c, const std::vector<LegendEntry>& entries, const Box& b,
                 const CartesianFlags& f) {
-  draw_legend(c, entries, legend, {}, {}, legend, f.legend_width);
-  c.add("</g>\n");
+  double y = b.bottom() + (f.hide_x ? 6 : 40);
+  if (f.legend_width > 0 && !entries.empty()) {
+    const Box size = legend_size_of(entries, f.legend_width);
+    const Box legend{4, y, size.w, size.h};
+    draw_legend(c, entries, legend, {}, {}, legend, f.legend_width);
+    y += size.h + 4;
+  }
+  if (f.legend_width > 0)
+    draw_key(c, f.notes, {8, y}, f.legend_width);
+  else
+    draw_key(c, f.notes, {b.x, y}, b.w);
 }
 
 }  // namespace
@@ -427,19 +447,19 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
     draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series),
               a.series[job.series].right_axis, job.attributes);
   add_bodies(a, p, seen);
-  draw_notes(c, a, p, b, taken, seen);
+  draw_notes(c, a, p, b, f.notes, taken);
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
   const Box size = legend_size_of(entries, f.legend_width);
-  if (f.legend_width > 0)
-    return end_narrow(c, entries, {4, b.bottom() + (f.hide_x ? 6 : 40), size.w, size.h}, f);
-  draw_legend(c, entries, b, seen, taken,
-              outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
-                                         : a.heat.empty() ? 8
-                                                          : colorbar),
-                            b.y, size.w, size.h}
-                      : Box{});
+  if (f.legend_width <= 0)
+    draw_legend(c, entries, b, seen, taken,
+                outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
+                                           : a.heat.empty() ? 8
+                                                            : colorbar),
+                              b.y, size.w, size.h}
+                        : Box{});
+  draw_below(c, entries, b, f);
   c.add("</g>\n");
 }
 

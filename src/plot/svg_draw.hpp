@@ -170,8 +170,27 @@ void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b);
 /// to `taken`.
 void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
                std::vector<Box>& taken, const std::vector<Point>& seen);
-void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
-                const std::vector<Point>& seen);
+/// Where the notes of some axes stand: beside their points, or, where there is no room for a text, a
+/// number there and the text in a key beneath.
+struct PlacedNote {
+  std::size_t note = 0;
+  Point point{0, 0};
+  Box at;
+  int number = 0;  ///< 0: its text
+};
+struct NotePlan {
+  Box frame;
+  std::vector<PlacedNote> notes;
+  std::vector<std::string> key;  ///< "1: impeller"
+};
+NotePlan place_notes(const Axes& a, const Prepared& p, const Box& frame,
+                     const std::vector<Point>& seen);
+/// Height of the key, px; 0 without one.
+double key_height(const NotePlan& plan, double width);
+/// Names of rules, and the notes where the plan has them.
+void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const NotePlan& plan,
+                std::vector<Box>& taken);
+void draw_key(Canvas& c, const NotePlan& plan, const Point& corner, double width);
 
 struct Margins {
   double left = 0, right = 0, top = 0, bottom = 0;
@@ -179,12 +198,15 @@ struct Margins {
 struct CartesianFlags {
   bool hide_x = false;
   bool legend_outside = false;
+  NotePlan notes;
   double legend_width = 0;  ///< of a narrow drawing: the legend stands below, so wide
 };
 inline constexpr double narrow_width = 360;  ///< px, of the drawing for telephones
 inline constexpr double narrow_legend_width = 352;
 /// Also decides where the legend stands.
 Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f);
+/// Of a frame that stands.
+NotePlan plan_notes(const Axes& a, const Box& frame);
 /// Of a frame that stands: its ticks may have wider labels than those reckoned with.
 double left_margin(const Axes& a, const Box& frame);
 void draw_cartesian(Canvas& c, const Axes& a, const Box& frame, const CartesianFlags& f);

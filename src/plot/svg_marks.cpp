@@ -6,6 +6,7 @@
 #include <plot/svg_draw.hpp>
 #include <core/text.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace whirl::plot::svg {
@@ -301,14 +302,24 @@ double hidden_by(const Box& t, const Box& frame, const std::vector<Box>& taken,
   return cost;
 }
 
-/// Beside a point, where it hides least.
+/// Beside a point, where it hides least, no further away than told.
 Box place_beside(const Point& p, double w, const Box& frame, const std::vector<Box>& taken,
-                 const std::vector<Point>& seen) {
+                 const std::vector<Point>& seen, double furthest = 130) {
   Box at;
   double best = infinity;
-  for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0})
-    for (const auto& [sx, sy] :
-         {std::pair{1.0, -1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}, {0.0, -1.2}, {0.0, 1.2}}) {
+  constexpr std::array<std::pair<double, double>, 10> directions{{{1.0, -1.0},
+                                                                  {-1.0, -1.0},
+                                                                  {1.0, 1.0},
+                                                                  {-1.0, 1.0},
+                                                                  {0.0, -1.2},
+                                                                  {0.0, 1.2},
+                                                                  {1.0, -0.4},
+                                                                  {-1.0, -0.4},
+                                                                  {1.0, 0.4},
+                                                                  {-1.0, 0.4}}};
+  for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0, 125.0})
+    for (const auto& [sx, sy] : directions) {
+      if (reach > furthest) break;
       const Box t{sx > 0   ? p.x + reach
                   : sx < 0 ? p.x - reach - w
                            : p.x - w / 2,
@@ -321,14 +332,17 @@ Box place_beside(const Point& p, double w, const Box& frame, const std::vector<B
   return at;
 }
 
-/// At a place, or as near to it as there is room.
+/// At a place, or as near to it as there is room, no further away than told: in rows of the text,
+/// half its width aside counting as one.
 Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& taken,
-               const std::vector<Point>& seen) {
+               const std::vector<Point>& seen, double furthest) {
   if (hidden_by(wanted, frame, taken, seen) == 0.0) return wanted;
   Box at = wanted;
   double best = infinity;
-  for (int rows = -6; rows <= 6; ++rows)
+  const int most_rows = static_cast<int>(furthest);
+  for (int rows = -most_rows; rows <= most_rows; ++rows)
     for (const double column : {0.0, -0.5, 0.5, -1.1, 1.1}) {
+      if (std::abs(rows) + 2 * std::abs(column) > furthest) continue;
       const Box t{wanted.x + column * wanted.w, wanted.y + 15.0 * rows, wanted.w, wanted.h};
       // a name beside what it names looks like its neighbour's
       const double cost = std::abs(rows) + 3.5 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
@@ -340,13 +354,99 @@ Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& take
   return at;
 }
 
-}  // namespace
+/// Places the notes of some axes one after the other.
+class NotePlacer {
+ public:
+  NotePlacer(const Axes& a, const Prepared& p, const Box& frame, const std::vector<Point>& seen);
+  NotePlan place();
 
-void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
-               std::vector<Box>& taken, const std::vector<Point>& seen) {
+ private:
+  Box place_text(const PlacedNote& note, const std::string& text, bool is_number) const;
+  bool has_room(const PlacedNote& note) const;
+  void number_the_rest(std::vector<PlacedNote> rest);
+
+  const Axes& a_;
+  const Box& frame_;
+  const std::vector<Point>& seen_;
+  std::vector<Box> taken_;
+  NotePlan plan_;
+};
+
+NotePlacer::NotePlacer(const Axes& a, const Prepared& p, const Box& frame,
+                       const std::vector<Point>& seen)
+    : a_(a),
+      frame_(frame),
+      seen_(seen) {
+  plan_.frame = frame;
+  for (const Box& name : places_of_names(a, p.x, p.y, frame))
+    if (name.w > 0) taken_.push_back(name);
+  for (std::size_t i = 0; i < a.notes.size(); ++i) {
+    const Note& n = a.notes[i];
+    const Point q{p.x(n.x), (n.right_axis ? p.r : p.y)(n.y)};
+    if (std::isnan(q.x) || std::isnan(q.y) || q.x < frame.x - 1 || q.x > frame.right() + 1 ||
+        q.y < frame.y - 1 || q.y > frame.bottom() + 1)
+      continue;
+    plan_.notes.push_back({i, q, {}, 0});
+    constexpr double mark = 4.5;  // half of what stands at the point
+    if (n.leader) taken_.push_back({q.x - mark, q.y - mark, 2 * mark, 2 * mark});
+  }
+}
+
+Box NotePlacer::place_text(const PlacedNote& note, const std::string& text, bool is_number) const {
+  const Note& n = a_.notes[note.note];
   const double w = note_width(text);
-  const Box at = place_beside(p, w, frame, taken, seen);
-  taken.push_back(at);
+  if (n.leader) return place_beside(note.point, w, frame_, taken_, seen_, is_number ? 130 : 50);
+  // a text that is wide stands about where the whole one would have its middle
+  const double x =
+      note.point.x + n.dx + (is_number ? (note_width(n.text) / wide_fonts - w) / 2 : 0);
+  const Box wanted{x, note.point.y + n.dy - 11, w, 14};
+  // a number may stand on a body, a name must not
+  return is_number ? place_near(wanted, frame_, taken_, {}, 6.0)
+                   : place_near(wanted, frame_, taken_, seen_, 2.5);
+}
+
+/// Names of a drawing stand on no body.
+bool NotePlacer::has_room(const PlacedNote& note) const {
+  if (!inside(note.at, frame_) || !is_free(note.at, taken_)) return false;
+  if (a_.patches.empty() || a_.notes[note.note].leader) return true;
+  constexpr double a_corner = 0.4;
+  return hidden_by(note.at, frame_, {}, seen_) < a_corner;
+}
+
+/// From left to right.
+void NotePlacer::number_the_rest(std::vector<PlacedNote> rest) {
+  std::stable_sort(rest.begin(), rest.end(), [](const PlacedNote& one, const PlacedNote& other) {
+    return one.point.x < other.point.x;
+  });
+  for (PlacedNote& note : rest) {
+    note.number = static_cast<int>(plan_.key.size()) + 1;
+    const std::string number = std::to_string(note.number);
+    note.at = place_text(note, number, true);
+    taken_.push_back(note.at);
+    plan_.key.push_back(number + ": " + a_.notes[note.note].text);
+    plan_.notes.push_back(note);
+  }
+}
+
+NotePlan NotePlacer::place() {
+  std::vector<PlacedNote> rest;
+  const std::vector<PlacedNote> all = std::move(plan_.notes);
+  plan_.notes.clear();
+  for (PlacedNote note : all) {
+    note.at = place_text(note, a_.notes[note.note].text, false);
+    if (!has_room(note)) {
+      rest.push_back(note);
+      continue;
+    }
+    taken_.push_back(note.at);
+    plan_.notes.push_back(note);
+  }
+  number_the_rest(std::move(rest));
+  return std::move(plan_);
+}
+
+/// A circle at p, and the text at its place.
+void draw_leader(Canvas& c, const Point& p, const std::string& text, const Box& at) {
   c.add("<g class=\"pin\" data-p=\"" + number_text(p.x) + " " + number_text(p.y) + "\">");
   c.line(p.x, p.y, std::clamp(p.x, at.x, at.right()), at.y + at.h / 2 < p.y ? at.bottom() : at.y,
          stroke(ink, 0.7));
@@ -362,6 +462,54 @@ void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& fr
   c.attr("height", at.h);
   c.add(" " + paper_fill() + " fill-opacity=\"0.8\"/>");
   c.text(at.x + at.w / 2, at.y + 11, text, note_size, "middle");
+  c.add("</g>\n");
+}
+
+}  // namespace
+
+void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
+               std::vector<Box>& taken, const std::vector<Point>& seen) {
+  const Box at = place_beside(p, note_width(text), frame, taken, seen);
+  taken.push_back(at);
+  draw_leader(c, p, text, at);
+}
+
+NotePlan place_notes(const Axes& a, const Prepared& p, const Box& frame,
+                     const std::vector<Point>& seen) {
+  return NotePlacer(a, p, frame, seen).place();
+}
+
+namespace {
+
+constexpr double key_row = 15;
+
+/// Width of a column of the key and the number of them.
+std::pair<double, std::size_t> key_columns(const NotePlan& plan, double width) {
+  double widest = 0;
+  for (const std::string& entry : plan.key)
+    widest = std::max(widest, note_width(entry) + 12);
+  const auto columns = static_cast<std::size_t>(std::max(1.0, width / std::max(1.0, widest)));
+  return {widest, std::min(columns, std::max<std::size_t>(1, plan.key.size()))};
+}
+
+}  // namespace
+
+double key_height(const NotePlan& plan, double width) {
+  if (plan.key.empty()) return 0;
+  const std::size_t columns = key_columns(plan, width).second;
+  return 8 + key_row * static_cast<double>((plan.key.size() + columns - 1) / columns);
+}
+
+/// Column by column.
+void draw_key(Canvas& c, const NotePlan& plan, const Point& corner, double width) {
+  if (plan.key.empty()) return;
+  const auto [each, columns] = key_columns(plan, width);
+  const std::size_t rows = (plan.key.size() + columns - 1) / columns;
+  c.add("<g class=\"key\">");
+  for (std::size_t i = 0; i < plan.key.size(); ++i)
+    c.text_within(width, corner.x + each * static_cast<double>(i / rows),
+                  corner.y + 14 + key_row * static_cast<double>(i % rows), plan.key[i], note_size,
+                  "start");
   c.add("</g>\n");
 }
 
@@ -397,8 +545,8 @@ double names_height(const Axes& a, const Scale& x, const Box& b) {
   return lowest - b.y;
 }
 
-void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
-                const std::vector<Point>& seen) {
+void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const NotePlan& plan,
+                std::vector<Box>& taken) {
   const std::vector<Box> names = places_of_names(a, p.x, p.y, b);
   for (std::size_t i = 0; i < a.rules.size(); ++i) {
     const Rule& r = a.rules[i];
@@ -411,20 +559,20 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::
     c.text(at.x, at.y + 11, r.label, note_size);
     c.add("</g>\n");
   }
-  for (const auto& n : a.notes) {
-    const double x = p.x(n.x), y = (n.right_axis ? p.r : p.y)(n.y), w = note_width(n.text);
-    if (std::isnan(x) || std::isnan(y) || x < b.x - 1 || x > b.right() + 1 || y < b.y - 1 ||
-        y > b.bottom() + 1)
+  const double dx = b.x - plan.frame.x, dy = b.y - plan.frame.y;
+  for (const PlacedNote& placed : plan.notes) {
+    const Note& n = a.notes[placed.note];
+    const std::string text = placed.number > 0 ? std::to_string(placed.number) : n.text;
+    const Box at{placed.at.x + dx, placed.at.y + dy, placed.at.w, placed.at.h};
+    const Point point{placed.point.x + dx, placed.point.y + dy};
+    taken.push_back(at);
+    if (n.leader) {
+      draw_leader(c, point, text, at);
       continue;
-    if (n.leader)
-      draw_note(c, {x, y}, n.text, b, taken, seen);
-    else {
-      const Box at = place_near({x + n.dx, y + n.dy - 11, w, 14}, b, taken, seen);
-      taken.push_back(at);
-      c.add("<g class=\"pin\" data-p=\"" + number_text(x) + " " + number_text(y) + "\">");
-      c.text(at.x, at.y + 11, n.text, note_size);
-      c.add("</g>\n");
     }
+    c.add("<g class=\"pin\" data-p=\"" + number_text(point.x) + " " + number_text(point.y) + "\">");
+    c.text(at.x, at.y + 11, text, note_size);
+    c.add("</g>\n");
   }
 }
 

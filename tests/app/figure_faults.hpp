@@ -1,6 +1,7 @@
-// Looks at the curves of a figure as a reader would: none leaves its axes, no axis dwarfs its data,
-// no number is none. check_figures.py looks at the texts of the examples' figures besides.
+// Looks at a figure as a reader would: no curve leaves its axes, no axis dwarfs its data, no number
+// is none, no text stands on another. check_figures.py looks so at the figures of the examples.
 #pragma once
+#include <core/text.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -28,10 +29,48 @@ class FigureCheck {
       if (axes.substr(begin.size(), 2) == "xy") look_at(axes);
       at = next;
     }
+    look_at_texts();
     return std::move(faults_);
   }
 
  private:
+  struct TextBox {
+    std::string text;
+    double x0, y0, x1, y1;
+    bool overlaps(const TextBox& o, double by) const {
+      return std::min(x1, o.x1) - std::max(x0, o.x0) > by &&
+             std::min(y1, o.y1) - std::max(y0, o.y0) > by;
+    }
+  };
+
+  /// Of a text element; capitals are 0.72 of the size high. Fonts that stand for Helvetica where it
+  /// is not there are up to 1.15 as wide.
+  static TextBox box_of(std::string_view tag, std::string text) {
+    const double size = numbers_of(attribute(tag, "font-size")).at(0);
+    const double x = numbers_of(attribute(tag, "x")).at(0),
+                 y = numbers_of(attribute(tag, "y")).at(0);
+    const double w = 1.08 * text_width(text, size), h = 0.72 * size;
+    const std::string_view anchor = attribute(tag, "text-anchor");
+    const double shift = anchor == "middle" ? 0.5 : anchor == "end" ? 1.0 : 0.0;
+    if (attribute(tag, "transform").starts_with("rotate(-90"))
+      return {std::move(text), x - h, y - (1 - shift) * w, x, y + shift * w};
+    return {std::move(text), x - shift * w, y - h, x + (1 - shift) * w, y};
+  }
+
+  void look_at_texts() {
+    std::vector<TextBox> texts;
+    for (std::size_t at = svg_.find("<text "); at != std::string::npos;
+         at = svg_.find("<text ", at + 1)) {
+      const std::size_t end = svg_.find('>', at);
+      const std::string_view tag = std::string_view(svg_).substr(at, end - at);
+      texts.push_back(box_of(tag, svg_.substr(end + 1, svg_.find('<', end) - end - 1)));
+    }
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      for (std::size_t j = i + 1; j < texts.size(); ++j)
+        if (texts[i].overlaps(texts[j], 1.0))
+          faults_.push_back("texts overlap: '" + texts[i].text + "' and '" + texts[j].text + "'");
+  }
+
   static std::vector<double> numbers_of(std::string_view text) {
     const std::string copy(text);
     std::vector<double> out;

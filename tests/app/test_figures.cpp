@@ -1,9 +1,12 @@
 // What the pictures of a run rest on: keyphasors of several shafts, motion apart from sag, clearance
 // diagrams, the replay, the machine in one drawing.
 #include "deck_run.hpp"
+#include "figure_faults.hpp"
 #include "lateral_mass.hpp"
 
 #include <core/types.hpp>
+#include <plot/plots.hpp>
+#include <plot/svg.hpp>
 
 #include <complex>
 #include <tuple>
@@ -268,4 +271,74 @@ operating_speed = ["4000 rpm", "5000 rpm"]
   EXPECT_NEAR(top, 1.12 * 2400 / std::sqrt(4000.0), 1e-9 * top);
   for (const char* zone : {">zone A<", ">zone B<", ">zone C<", ">zone D<"})
     EXPECT_NE(large.find(zone), std::string::npos) << zone;
+}
+
+namespace {
+
+/// Disks, supports and probes every 20 mm of a shaft of 2 m.
+plot::RotorDrawing crowded_rotor() {
+  plot::RotorDrawing d;
+  d.title = "crowd";
+  d.sections = {{0, 2, 0.05, 0.05, 0, 0, "shaft"}};
+  for (int k = 0; k < 12; ++k) {
+    const double s = 0.8 + 0.02 * k;
+    d.disks.push_back({s, 0.15, 0.05, 0.01, "impeller " + std::to_string(k)});
+    d.bearings.push_back({s + 0.01, 0.05, "labyrinth " + std::to_string(k)});
+    d.probes.push_back({s, 0.05, "eddy current " + std::to_string(k)});
+  }
+  return d;
+}
+
+}  // namespace
+
+// Names that have no room stand in a key, each beside its number; a name alone stands at its part.
+TEST(Figures, CrowdedNamesHaveAKey) {
+  plot::RotorDrawing few = crowded_rotor();
+  few.disks.resize(1);
+  few.bearings.resize(1);
+  few.probes.resize(1);
+  EXPECT_EQ(plot::render_svg(plot::plot_rotor("few", few)).find("class=\"key\""),
+            std::string::npos);
+  const std::string svg = plot::render_svg(plot::plot_rotor("rotor", crowded_rotor()));
+  EXPECT_EQ(test::FigureCheck(svg).faults(), std::vector<std::string>());
+  const std::size_t from = svg.find("class=\"key\"");
+  ASSERT_NE(from, std::string::npos);
+  const std::string key = svg.substr(from, svg.find("</g>", from) - from);
+  const std::size_t numbered = count(key, "<text ");
+  EXPECT_GE(numbered, 12u);
+  for (std::size_t n = 1; n <= numbered; ++n) {
+    EXPECT_EQ(count(svg, ">" + std::to_string(n) + "</text>"), 1u) << n;
+    EXPECT_EQ(count(key, ">" + std::to_string(n) + ": "), 1u) << n;
+  }
+  // all are named, here or there
+  for (int k = 0; k < 12; ++k)
+    for (const char* part : {"impeller ", "labyrinth ", "eddy current "})
+      EXPECT_EQ(count(svg, part + std::to_string(k) + "</text>"), 1u) << part << k;
+}
+
+TEST(Figures, CrowdedCriticalSpeedsHaveAKey) {
+  std::vector<plot::CampbellLine> lines(1);
+  std::vector<plot::CriticalMark> marks;
+  lines[0].label = "mode";
+  for (int k = 0; k <= 20; ++k) {
+    lines[0].speed.push_back(50.0 * k);
+    lines[0].frequency.push_back(500.0);
+    marks.push_back({490.0 + k, 500.0, 1, ""});
+  }
+  const double orders[] = {1.0};
+  const std::string svg =
+      plot::render_svg(plot::plot_campbell("campbell", "Campbell", lines, orders, marks));
+  EXPECT_EQ(test::FigureCheck(svg).faults(), std::vector<std::string>());
+  EXPECT_EQ(count(svg, " rpm</text>"), marks.size());
+}
+
+// What the figures of every deck are looked at with sees names on one another.
+TEST(Figures, TextsOnTextsAreAFault) {
+  const auto with = [](const char* y) {
+    return std::string(
+               "<svg><text x=\"10\" y=\"20\" font-size=\"11\">seal</text><text x=\"14\" y=\"") +
+           y + "\" font-size=\"11\" text-anchor=\"middle\">impeller</text></svg>";
+  };
+  EXPECT_EQ(test::FigureCheck(with("22")).faults().size(), 1u);
+  EXPECT_TRUE(test::FigureCheck(with("40")).faults().empty());
 }

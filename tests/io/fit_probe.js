@@ -20,6 +20,12 @@ window.addEventListener("load", () => {
       const out = Math.max(box.left - t.left, t.right - box.right, box.top - t.top, t.bottom - box.bottom);
       check(out < 2, figure.id + ": '" + text.textContent + "' leaves the figure by " + out.toFixed(0) + " px");
     }
+    const texts = [...drawings[0].querySelectorAll("text")].map((e) => [e.textContent, e.getBoundingClientRect()]);
+    texts.forEach(([a, p], i) => texts.slice(i + 1).forEach(([b, q]) => {
+      // a line is higher than its letters
+      const by = Math.min(p.right, q.right) - Math.max(p.left, q.left), high = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+      check(by <= 1 || high <= 5, figure.id + ": '" + a + "' stands on '" + b + "'");
+    }));
     // what a curve covers is within its axes
     for (const axes of drawings[0].querySelectorAll("g.axes[data-kind=xy]")) {
       const frame = axes.querySelector("rect.frame").getBoundingClientRect();
