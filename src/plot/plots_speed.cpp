@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -68,21 +69,39 @@ void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, cons
   }
 }
 
-// Where a line ends because its motion no longer oscillates, that is written.
-void mark_overdamped(Axes& a, const CampbellLine& line) {
-  const std::size_t n = std::min(line.frequency.size(), line.log_decrement.size());
-  const auto there = [&](std::size_t k) { return line.frequency[k] > 0; };
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!there(k) || !(line.log_decrement[k] > heavy_decrement)) continue;
-    const bool ends = (k + 1 < n && !there(k + 1)) || (k > 0 && !there(k - 1));
-    const double x = rpm * line.speed[k];
-    const double y = hertz * line.frequency[k];
-    // forward and backward whirl of one frequency end at one place
-    const bool said = std::any_of(a.notes.begin(), a.notes.end(), [&](const auto& note) {
-      return note.text == "overdamped" && note.x == x && std::abs(note.y - y) <= 0.02 * y;
-    });
-    if (ends && !said) a.notes.push_back({x, y, "overdamped", false});
+/// Whether a line that ends at k, coming from `before`, ends because its motion no longer
+/// oscillates: heavily damped there, or its damping ratio about to be 1 at the next speed.
+bool becomes_overdamped(const CampbellLine& line, std::size_t k, std::ptrdiff_t back) {
+  if (line.log_decrement[k] > heavy_decrement) return true;
+  const std::ptrdiff_t b = static_cast<std::ptrdiff_t>(k) + back;
+  if (b < 0 || b >= std::ssize(line.log_decrement)) return false;
+  const auto ratio = [&](std::size_t i) {
+    return line.log_decrement[i] / std::hypot(two_pi, line.log_decrement[i]);
+  };
+  const double growth = ratio(k) - ratio(static_cast<std::size_t>(b));
+  return ratio(k) + 1.5 * growth > 1.0;
+}
+
+/// The ends of lines whose motion becomes overdamped, a mark each.
+Series overdamped_ends(std::span<const CampbellLine> lines) {
+  Series ends;
+  ends.label = "becomes overdamped";
+  ends.style = {ink, Dash::solid, 0, Marker::diamond, 6, false};
+  ends.keep_all = true;
+  for (const CampbellLine& line : lines) {
+    const std::size_t n =
+        std::min({line.frequency.size(), line.log_decrement.size(), line.speed.size()});
+    const auto there = [&](std::size_t k) { return line.frequency[k] > 0; };
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!there(k)) continue;
+      const bool goes = k + 1 < n && !there(k + 1) && becomes_overdamped(line, k, -1);
+      const bool comes = k > 0 && !there(k - 1) && becomes_overdamped(line, k, 1);
+      if (!goes && !comes) continue;
+      ends.x.push_back(rpm * line.speed[k]);
+      ends.y.push_back(hertz * line.frequency[k]);
+    }
   }
+  return ends;
 }
 
 std::string order_name(double order) { return number_text(order, 3) + "X"; }
@@ -113,7 +132,6 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
       start = std::min(start, v);
     }
     add_line(a, l, y, "log decrement", "-", l.log_decrement, used, &heavy);
-    mark_overdamped(a, l);
   }
   a.y.max = top > 0 ? 1.06 * top : nan;
   for (const double order : orders) {
@@ -135,6 +153,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
     a.notes.push_back({limit * rpm, order * limit * hertz, order_name(order), false,
                        at_right ? -30.0 : 4.0, at_right ? -5.0 : 14.0});
   }
+  if (Series ends = overdamped_ends(lines); !ends.x.empty()) a.series.push_back(std::move(ends));
   for (const auto& c : criticals)
     a.notes.push_back({c.speed * rpm, c.frequency * hertz,
                        c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label});
@@ -227,7 +246,10 @@ Figure plot_stability(std::string name, std::string title, std::span<const Campb
     std::vector<double> hz(l.frequency);
     for (double& v : hz)
       v *= hertz;
-    add_line(a, l, l.log_decrement, "frequency", "Hz", hz, used);
+    std::vector<double> decrement(l.log_decrement);  // of a motion that whirls: others have none
+    for (std::size_t k = 0; k < decrement.size() && k < l.frequency.size(); ++k)
+      if (!(l.frequency[k] > 0)) decrement[k] = nan;
+    add_line(a, l, decrement, "frequency", "Hz", hz, used);
   }
   a.rules.push_back({false, 0, "", {ink, Dash::solid, 1.0}});
   for (const double s : thresholds)

@@ -363,6 +363,61 @@ TEST(Svg, ACurveThatComesBackIsDrawnAsOneThatGoes) {
   EXPECT_LT(plot::render_svg(f, {false, "", "", 1.5}).size(), 60000u);
 }
 
+namespace {
+
+/// A mode whose damping grows with the speed: its line ends at 300 rad/s, or at 600 rad/s.
+plot::CampbellLine line_that_ends(std::vector<double> decrement) {
+  plot::CampbellLine l;
+  l.label = "1 F";
+  l.whirl = plot::Whirl::forward;
+  l.speed = {100, 200, 300, 400};
+  l.frequency = {500, 480, 400, nan};
+  l.log_decrement = std::move(decrement);
+  return l;
+}
+
+const plot::Series* overdamped_marks(const plot::Figure& f) {
+  for (const plot::Series& s : f.axes.front().series)
+    if (s.label == "becomes overdamped") return &s;
+  return nullptr;
+}
+
+}  // namespace
+
+// A line that ends since its motion no longer oscillates bears a mark there; one that leaves the
+// list of modes does not.
+TEST(Campbell, EndsOfOverdampedLinesAreMarked) {
+  const auto campbell = [](const plot::CampbellLine& line) {
+    return plot::plot_campbell("c", "c", std::span(&line, 1), {}, {});
+  };
+  const plot::Figure heavy = campbell(line_that_ends({2, 4, 8, nan}));
+  const plot::Series* marks = overdamped_marks(heavy);
+  ASSERT_NE(marks, nullptr);
+  ASSERT_EQ(marks->x.size(), 1u);
+  EXPECT_NEAR(marks->x[0], to_rpm(300.0), 1e-9);
+  EXPECT_NEAR(marks->y[0], to_hz(400.0), 1e-9);
+  EXPECT_NE(marks->style.marker, plot::Marker::none);
+  EXPECT_TRUE(heavy.axes.front().notes.empty());
+  // damping ratios 0.16, 0.30, 0.69: 1 before the next speed
+  EXPECT_NE(overdamped_marks(campbell(line_that_ends({1, 2, 6, nan}))), nullptr);
+  EXPECT_EQ(overdamped_marks(campbell(line_that_ends({1, 1.1, 1.2, nan}))), nullptr);
+  plot::CampbellLine begins = line_that_ends({2, 4, 8, nan});
+  for (auto* column : {&begins.frequency, &begins.log_decrement})
+    std::reverse(column->begin(), column->end());
+  const plot::Figure other = campbell(begins);
+  ASSERT_NE(overdamped_marks(other), nullptr);
+  EXPECT_NEAR(overdamped_marks(other)->x[0], to_rpm(200.0), 1e-9);
+}
+
+TEST(Campbell, DecrementsAreDrawnWhereAModeWhirls) {
+  plot::CampbellLine l = line_that_ends({2, 4, 8, 700});
+  l.frequency[3] = 0;
+  const plot::Figure f = plot::plot_stability("s", "s", std::span(&l, 1));
+  for (const plot::Series& s : f.axes.front().series)
+    for (const double y : s.y)
+      EXPECT_FALSE(y > 8) << y;
+}
+
 TEST(Clearances, WallsStandAtTheGapsAndShareIsWritten) {
   const plot::Figure f = gallery_clearances();
   const plot::Axes& a = f.axes.front();
