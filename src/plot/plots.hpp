@@ -110,7 +110,9 @@ struct ModeShape {
   std::vector<double> s;
   std::vector<Complex> y, z;
   std::vector<std::pair<std::string, double>> stations;  ///< bearings, disks: name and s
+  bool in_metres = false;  ///< deflections of an operating shape; those of a mode have no size
 };
+/// What is drawn says how far it is enlarged.
 Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode);
 
 /// A shape of a machine of several lines, where they stand: one scale for all.
@@ -130,6 +132,7 @@ struct ShapeLink {
 struct MachineShape {
   std::vector<ShapeLine> lines;
   std::vector<ShapeLink> links;
+  bool in_metres = false;  ///< as of a ModeShape
 };
 Figure plot_machine_shape(std::string name, std::string title, const MachineShape& shape);
 

@@ -57,8 +57,10 @@ Figure plot_replay(std::string name, std::string title, Replay motion,
   a.kind = AxesKind::space;
   a.view = {-62, 20};
   a.x = Axis("axial position", frame.along.name);
-  a.y = Axis("y", frame.across.name);
-  a.z = Axis("z", frame.across.name);
+  const std::string enlarged =
+      frame.one_axis ? "" : ", motion enlarged " + readable(frame.magnification, 2) + " times";
+  a.y = Axis("y" + enlarged, frame.across.name);
+  a.z = Axis("z" + enlarged, frame.across.name);
   if (frame.one_axis) {
     a.space_aspect = {2.4, 1, 1};
     const double reach = 1.06 * motion.gain * most;
@@ -95,8 +97,6 @@ Figure plot_replay(std::string name, std::string title, Replay motion,
   f.caption = "Shown: t = " + readable(motion.time[motion.shown], 5) + " s, " +
               readable(rpm * motion.speed[motion.shown], 5) +
               " rpm, with the paths over a turn of the reference. The slider sets the time.";
-  if (!frame.one_axis)
-    f.caption += " Motion magnified " + readable(frame.magnification, 3) + " times.";
   f.axes.push_back(std::move(a));
   f.replay = std::make_shared<const Replay>(std::move(motion));
   return f;

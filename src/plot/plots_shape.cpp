@@ -44,6 +44,19 @@ void append(Series& s, double x, double y) {
   s.y.push_back(y);
 }
 
+/// What the largest deflection, drawn as 1, is; empty: of no size.
+std::string size_of_one(const Moment& moment, bool in_metres) {
+  if (!in_metres) return {};
+  const double largest = 1 / moment.scale;
+  const DisplayUnit u = length_unit(largest);
+  return readable(u.factor * largest, 3) + " " + u.name;
+}
+
+/// "deflection y, largest = 1", "deflection y, 1 = 12.3 µm".
+std::string deflection_label(const std::string& direction, const std::string& one) {
+  return "deflection" + direction + (one.empty() ? ", largest = 1" : ", 1 = " + one);
+}
+
 /// The deflected shaft at a moment and orbits of some stations.
 Axes shape_in_space(const ModeShape& mode, const Moment& moment, const DisplayUnit& u) {
   Axes space;
@@ -51,8 +64,9 @@ Axes shape_in_space(const ModeShape& mode, const Moment& moment, const DisplayUn
   space.space_aspect = {2.4, 1, 1};
   space.view = {-62, 20};
   space.x = Axis("axial position", u.name);
-  space.y = Axis("y", "-");
-  space.z = Axis("z", "-");
+  const std::string one = size_of_one(moment, mode.in_metres);
+  space.y = Axis(deflection_label(" y", one), "-");
+  space.z = Axis(deflection_label(" z", one), "-");
   space.y.min = space.z.min = -1.08;
   space.y.max = space.z.max = 1.08;
   space.weight = 1.7;
@@ -102,7 +116,7 @@ Axes shape_in_planes(const ModeShape& mode, const Moment& moment, const DisplayU
   }
   Axes planes;
   planes.x = Axis("axial position", u.name);
-  planes.y = Axis("deflection, largest = 1", "-");
+  planes.y = Axis(deflection_label("", size_of_one(moment, mode.in_metres)), "-");
   planes.series = {std::move(y), std::move(z), std::move(envelope)};
   planes.rules.push_back({false, 0, "", {ink, Dash::solid, 0.8}});
   for (const auto& [text, s] : mode.stations)
@@ -140,7 +154,8 @@ class MachinePicture {
   void put(SpaceSeries& s, const Vec3& rest, const Eigen::Vector3cd& u, bool moves) const;
   const MachineShape& shape_;
   DisplayUnit unit_;
-  Complex to_one_;   ///< makes the largest deflection 1 at the moment shown
+  Moment moment_;  ///< its factor makes the largest deflection 1 at the moment shown
+  Complex to_one_;
   double draw_ = 0;  ///< m, of a deflection of 1
 };
 
@@ -157,7 +172,8 @@ MachinePicture::MachinePicture(const MachineShape& shape) : shape_(shape) {
     }
   const double size = all.s.empty() ? 1.0 : std::max((hi - lo).maxCoeff(), 1e-6);
   unit_ = size >= 10 ? DisplayUnit{1, "m"} : DisplayUnit{1e3, "mm"};
-  to_one_ = largest_moment(all).factor;
+  moment_ = largest_moment(all);
+  to_one_ = moment_.factor;
   draw_ = 0.14 * size;
 }
 
@@ -175,8 +191,12 @@ Axes MachinePicture::in_space() const {
   a.equal_aspect = true;
   a.view = {-62, 20};
   a.x = Axis("x", unit_.name);
-  a.y = Axis("y", unit_.name);
-  a.z = Axis("z", unit_.name);
+  // places are to scale, deflections are not
+  const std::string enlarged =
+      shape_.in_metres ? "deflection enlarged " + readable(draw_ * moment_.scale, 2) + " times"
+                       : "deflection without scale";
+  a.y = Axis("y, " + enlarged, unit_.name);
+  a.z = Axis("z, " + enlarged, unit_.name);
   a.weight = 1.8;
   SpaceSeries rest{"", {}, {}, {}, Style{ink, Dash::dash_dot, 0.8}};
   SpaceSeries orbits{"orbits of the stations", {}, {}, {}, Style{faint, Dash::solid, 0.9}};
@@ -222,7 +242,7 @@ Axes MachinePicture::in_space() const {
 Axes MachinePicture::in_planes() const {
   Axes a;
   a.x = Axis("x", unit_.name);
-  a.y = Axis("deflection, largest of all = 1", "-");
+  a.y = Axis(deflection_label("", size_of_one(moment_, shape_.in_metres)), "-");
   int color = 0;
   for (const ShapeLine& l : shape_.lines) {
     for (const Index c : {1, 2}) {

@@ -81,6 +81,15 @@ const char* anchor_of(double outwards_x) {
   return outwards_x > 0.35 ? "start" : outwards_x < -0.35 ? "end" : "middle";
 }
 
+constexpr double title_row = 15;
+
+/// A title with a comma takes two lines where it stands below the box.
+std::vector<std::string> lines_of(const std::string& title) {
+  const std::size_t comma = title.find(", ");
+  if (comma == std::string::npos) return {title};
+  return {title.substr(0, comma + 1), title.substr(comma + 2)};
+}
+
 /// Axes in space on the canvas.
 class SpaceDrawing {
  public:
@@ -110,6 +119,7 @@ class SpaceDrawing {
   Edge edge_of(Index d) const;
   void draw_axis(Index d);
   double draw_ticks(Index d, const Edge& edge);
+  void put_title(const std::string& title, const Point& wanted, const char* anchor);
   void append_motion(std::string& to, const std::array<Complex, 3>& motion) const;
   void draw_curve(std::size_t i);
 
@@ -143,7 +153,8 @@ SpaceDrawing::SpaceDrawing(Canvas& c, const Axes& a, const Box& cell)
       entries_(legend_entries(a, colors_)),
       legend_(legend_size_of(entries_, c.narrow ? narrow_legend_width : 0)),
       box_{cell.x + (c.narrow ? 40 : 56), cell.y + top_ + 2, cell.w - (c.narrow ? 70 : 112),
-           cell.h - top_ - 48 - (c.narrow ? legend_.h : 0)} {
+           cell.h - top_ - 48 - (c.narrow ? legend_.h : 0) -
+               (a.y.label.find(", ") == std::string::npos ? 0 : title_row)} {
   fit();
   const Vec3 towards(view_.ca * view_.ce, view_.sa * view_.ce, view_.se);
   for (std::size_t d = 0; d < 3; ++d) {
@@ -295,12 +306,38 @@ void SpaceDrawing::draw_axis(Index d) {
             "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
     return;
   }
-  const char* anchor = anchor_of(edge.ox);
-  const double width = wide_fonts * text_width(title, label_size);
-  const double before = width * (anchor[0] == 's' ? 0.0 : anchor[0] == 'e' ? 1.0 : 0.5);
-  const double first = cell_.x + 2 + before, last = cell_.right() - 2 - width + before;
-  c_.text(std::max(first, std::min(last, edge.middle.x + reach * edge.ox)),
-          edge.middle.y + reach * edge.oy + 6, title, label_size, anchor);
+  put_title(title, {edge.middle.x + reach * edge.ox, edge.middle.y + reach * edge.oy + 6},
+            anchor_of(edge.ox));
+}
+
+/// Within the cell, below the labels that are there.
+void SpaceDrawing::put_title(const std::string& title, const Point& wanted, const char* anchor) {
+  const std::vector<std::string> lines = lines_of(title);
+  const auto box_of = [&](const std::string& line, double y) {
+    const double width = wide_fonts * text_width(line, label_size);
+    const double left = wanted.x - width * (anchor[0] == 's' ? 0.0 : anchor[0] == 'e' ? 1.0 : 0.5);
+    const double last = cell_.right() - 2 - width;
+    return Box{std::max(cell_.x + 2, std::min(last, left)), y - 10, width, 13};
+  };
+  const auto is_free = [&](double y) {
+    for (const std::string& line : lines) {
+      const Box box = box_of(line, y);
+      if (std::any_of(labels_.begin(), labels_.end(),
+                      [&](const Box& o) { return box.overlaps(o); }))
+        return false;
+      y += title_row;
+    }
+    return true;
+  };
+  double y = wanted.y;
+  for (int k = 0; k < 6 && !is_free(y); ++k)
+    y += 4;
+  for (const std::string& line : lines) {
+    const Box box = box_of(line, y);
+    labels_.push_back(box);
+    c_.text(box.x + box.w / 2, y, line, label_size, "middle");
+    y += title_row;
+  }
 }
 
 /// Real and imaginary parts in units of the box.

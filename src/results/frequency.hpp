@@ -94,6 +94,7 @@ struct ShapeDrawing {
   std::string name, title, caption;  ///< name: within the step's files
   const VecXc* a = nullptr;
   analysis::ModeKind kind = analysis::ModeKind::lateral;
+  bool in_metres = false;  ///< an operating shape; modes have no size
 };
 /// Adds the figure of a shape: lateral ones in space and in two planes, all lines where they stand
 /// and on one scale; twist and axial motion against position.

@@ -117,6 +117,7 @@ std::vector<FinePlace> fine_places(const std::vector<Station>& st) {
 plot::Figure line_figure(FrequencyStep& s, const ShapeDrawing& d) {
   plot::ModeShape m;
   m.stations = names_on(s.job, 0);
+  m.in_metres = d.in_metres;
   for (const FinePlace& p : fine_places(stations_of(s, *d.a, 0))) {
     m.s.push_back(p.s);
     m.y.push_back(p.u[1]);
@@ -134,6 +135,7 @@ Eigen::Vector3cd deflection_of(const FrequencyStep& s, const VecXc& a, const mes
 plot::Figure machine_figure(FrequencyStep& s, const ShapeDrawing& d) {
   const meshes::Mesh& mesh = s.job.mesh;
   plot::MachineShape shape;
+  shape.in_metres = d.in_metres;
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     plot::ShapeLine line;
     line.label = mesh.lines[l].name;
@@ -172,7 +174,7 @@ plot::Figure machine_figure(FrequencyStep& s, const ShapeDrawing& d) {
     shape.links.push_back(std::move(link));
   }
   plot::Figure f = plot::plot_machine_shape(s.file(d.name), d.title, shape);
-  f.caption = "All lines where they stand, their deflection magnified on one scale.";
+  f.caption = "All lines where they stand, their deflections enlarged alike.";
   return f;
 }
 

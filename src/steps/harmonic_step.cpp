@@ -591,7 +591,8 @@ void HarmonicRun::add_shape(double x) {
        fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", to_hz(p.frequency), to_rpm(p.Omega)),
        {},
        &p.shape,
-       twists_ ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
+       twists_ ? analysis::ModeKind::torsional : analysis::ModeKind::lateral,
+       true});
   results::write_shape_frames(s_, name, p.shape, 1.0);
 }
 

@@ -422,9 +422,9 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
       results::add_shape_figures(
           s,
           {name, fmt::format("Operating shape at {:.6g} rpm{}", to_rpm(Omega), order_suffix(r, k)),
-           fmt::format("Largest amplitude {} {}, 0-peak, drawn as 1.", readable(unit.factor * most),
+           fmt::format("Largest amplitude of a node {} {}, 0-peak.", readable(unit.factor * most),
                        unit.name),
-           &x.shape[k]});
+           &x.shape[k], analysis::ModeKind::lateral, true});
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }

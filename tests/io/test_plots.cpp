@@ -435,6 +435,36 @@ TEST(Clearances, WallsStandAtTheGapsAndShareIsWritten) {
                   .y.logarithmic);
 }
 
+// No one reads an enlarged deflection off axes in mm as a real one.
+TEST(MachineShape, AxesSayHowFarDeflectionsAreEnlarged) {
+  plot::MachineShape m;
+  for (const double y : {0.0, 0.5}) {
+    plot::ShapeLine l{"line", {}, {}, {}};
+    for (const double x : {0.0, 0.5, 1.0}) {
+      l.rest.push_back({x, y, 0});
+      l.u.push_back({0.0, Complex(2e-6 * x, 0), 0.0});
+    }
+    m.lines.push_back(std::move(l));
+  }
+  const plot::Figure mode = plot::plot_machine_shape("m", "m", m);
+  EXPECT_EQ(mode.axes[0].y.label, "y, deflection without scale");
+  EXPECT_EQ(mode.axes[1].y.label, "deflection, largest = 1");
+  m.in_metres = true;
+  const plot::Figure shape = plot::plot_machine_shape("m", "m", m);
+  // 2 um of the far end are what is drawn beyond its place
+  const plot::SpaceSeries& line = shape.axes[0].space[2];
+  ASSERT_EQ(line.y.size(), 3u);
+  const double times = line.y.back() / 1e3 / 2e-6;
+  EXPECT_EQ(shape.axes[0].y.label, "y, deflection enlarged " + readable(times, 2) + " times");
+  EXPECT_EQ(shape.axes[0].z.label, "z, deflection enlarged " + readable(times, 2) + " times");
+  EXPECT_EQ(shape.axes[1].y.label, "deflection, 1 = 2 µm");
+
+  plot::ModeShape one{"", {0, 1}, {0.0, 3e-6}, {0.0, 0.0}, {}};
+  EXPECT_EQ(plot::plot_mode_shape("m", "m", one).axes[0].y.label, "deflection y, largest = 1");
+  one.in_metres = true;
+  EXPECT_EQ(plot::plot_mode_shape("m", "m", one).axes[0].y.label, "deflection y, 1 = 3 µm");
+}
+
 TEST(MachineShape, AllLinesHaveOneScaleAndMoveByTheirMotion) {
   const plot::Figure f = gallery_machine_shape();
   ASSERT_EQ(f.axes.size(), 2u);

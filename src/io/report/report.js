@@ -350,6 +350,7 @@
       const back = P.towards.map((t, d) => (t > 0 ? -H[d] : H[d]));
       const ticks = this.axis.map((a, d) => linearTicks(a.lo, a.hi, Math.max(2, Math.min(6, (P.unit * 2 * H[d]) / 70))));
       let s = "";
+      const taken = [];   // by labels and titles
       for (let d = 0; d < 3; ++d)
         for (const [i, j] of [[(d + 1) % 3, (d + 2) % 3], [(d + 2) % 3, (d + 1) % 3]]) {
           const p = [0, 0, 0], q = [0, 0, 0];
@@ -381,15 +382,31 @@
           w[d] = at(d, v);
           const t = P.px(w);
           s += `<line x1="${n2(t[0])}" y1="${n2(t[1])}" x2="${n2(t[0] + 4 * ox)}" y2="${n2(t[1] + 4 * oy)}" class="ci" stroke-width="0.9"/>`;
+          const w6 = 6.4 * ticks[d].labels[k].length, lx = t[0] + 9 * ox, ly = t[1] + 11 * oy + 4;
+          const label = { x: lx - w6 * (anchor === "start" ? 0 : anchor === "end" ? 1 : 0.5), y: ly - 10, w: w6, h: 12 };
+          if (taken.some((o) => label.x < o.x + o.w && o.x < label.x + label.w && label.y < o.y + o.h && o.y < label.y + label.h)) return;
+          taken.push(label);
           s += `<text x="${n2(t[0] + 9 * ox)}" y="${n2(t[1] + 11 * oy + 4)}" font-size="11" text-anchor="${anchor}" class="fi">${ticks[d].labels[k]}</text>`;
           widest = Math.max(widest, 6.4 * ticks[d].labels[k].length);
         });
         const reach = 16 + Math.abs(ox) * widest + 12 * Math.abs(oy), name = esc(title(this.axis[d].label, this.axis[d].unit, ticks[d].exponent));
-        const before = 7 * name.length * (anchor === "start" ? 0 : anchor === "end" ? 1 : 0.5), [left, right] = this.cell;
-        const x = d === 2 ? mid[0] + reach * ox - 6 : Math.max(left + 2 + before, Math.min(right - 2 - 7 * name.length + before, mid[0] + reach * ox));
-        const y = mid[1] + (d === 2 ? 0 : reach * oy + 6);
-        s += d === 2 ? `<text x="${n2(x)}" y="${n2(y)}" font-size="12.5" text-anchor="middle" class="fi" transform="rotate(-90 ${n2(x)} ${n2(y)})">${name}</text>`
-                     : `<text x="${n2(x)}" y="${n2(y)}" font-size="12.5" text-anchor="${anchor}" class="fi">${name}</text>`;
+        const [x, y] = [mid[0] + reach * ox, mid[1] + reach * oy + 6], [left, right] = this.cell;
+        if (d === 2) {
+          s += `<text x="${n2(x - 6)}" y="${n2(mid[1])}" font-size="12.5" text-anchor="middle" class="fi" transform="rotate(-90 ${n2(x - 6)} ${n2(mid[1])})">${name}</text>`;
+          continue;
+        }
+        // two lines where there is a comma, below the labels that are there
+        const lines = name.split(/(?<=,) /).map((text) => {
+          const w = 7 * text.length, l = x - w * (anchor === "start" ? 0 : anchor === "end" ? 1 : 0.5);
+          return { text, w, x: Math.max(left + 2, Math.min(right - 2 - w, l)) };
+        });
+        const free = (y0) => lines.every((l, k) => !taken.some((t) => l.x < t.x + t.w && t.x < l.x + l.w && y0 + 15 * k - 10 < t.y + t.h && t.y < y0 + 15 * k + 3));
+        let y1 = y;
+        for (let k = 0; k < 6 && !free(y1); ++k) y1 += 4;
+        lines.forEach((l, k) => {
+          taken.push({ x: l.x, y: y1 + 15 * k - 10, w: l.w, h: 13 });
+          s += `<text x="${n2(l.x + l.w / 2)}" y="${n2(y1 + 15 * k)}" font-size="12.5" text-anchor="middle" class="fi">${l.text}</text>`;
+        });
       }
       this.g.querySelector(".box").innerHTML = s;
       this.draw();
