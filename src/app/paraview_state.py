@@ -100,6 +100,8 @@ if "surface" in sources:
     coloured(shaft, view, sources["surface"], "displacement [m]")
     stripe, painted = part(sources["surface"], "spin stripe", 1, view)
     plain(painted, paint)
+    if "orbits" in sources:  # they run inside
+        shaft.Opacity, painted.Opacity = 0.4, 0.6
     print("parts:", ", ".join(f"{k} {name}" for k, name in enumerate(names(sources["surface"], "part names"))))
 
 if "line" in sources:
@@ -130,9 +132,11 @@ for view in views:
             arrows.GlyphMode = "All Points"
             plain(Show(arrows, view), [0.75, 0.2, 0.1])
     if "orbits" in sources:
-        trails = Show(sources["orbits"], view)
-        plain(trails, [0.1, 0.3, 0.8])
-        trails.LineWidth = 2.5
+        bounds = first.GetDataInformation().GetBounds()
+        tubes = Tube(registrationName="orbits as tubes", Input=sources["orbits"])
+        tubes.Radius = 0.0025 * max(bounds[k + 1] - bounds[k] for k in (0, 2, 4))
+        tubes.NumberofSides = 8
+        plain(Show(tubes, view), [0.1, 0.3, 0.8])
 
 stated = names(first, "deformation scale")
 for view in views:

@@ -103,7 +103,69 @@ used = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isins
 assert len(used) >= 6 and used <= arrays, (used, used - arrays)
 )";
 
+/// Stands for ParaView: takes what the script makes and shows, and looks at it.
+const char* stand_in = R"(
+import sys, types
+
+class Array:
+    def __init__(self, name):
+        self.Name = name
+    def GetNumberOfComponents(self):
+        return 3
+    def GetRange(self, component):
+        return (0.0, 1.0)
+
+class Arrays(list):
+    def __getitem__(self, name):
+        return Array(name)
+
+class Thing:
+    TimestepValues = [0.0, 1.0]
+    PointData = Arrays([Array("displacement [m]"), Array("radius [m]"), Array("force [N]")])
+    def __init__(self, kind, args, given):
+        self.__dict__.update(given, kind=kind, args=args)
+        made.append(self)
+    def GetDataInformation(self):
+        return self
+    def GetBounds(self):
+        return (0.0, 0.4, -0.1, 0.1, -0.1, 0.1)
+    def GetAbstractArray(self, name):
+        return None
+    def __getattr__(self, name):
+        if name[0] == "_":
+            raise AttributeError(name)
+        return lambda *args, **given: Thing(name, args, given)
+
+made = []
+paraview, simple = types.ModuleType("paraview"), types.ModuleType("paraview.simple")
+for name in """CreateView Text Show ColorBy GetColorTransferFunction GetScalarBar Threshold PVDReader VTKHDFReader Tube Glyph
+               GetAnimationScene AnnotateTimeFilter CreateLayout AssignViewToLayout AddCameraLink Render SaveScreenshot""".split():
+    setattr(simple, name, lambda *args, _kind=name, **given: Thing(_kind, args, given))
+simple._DisableFirstRenderCameraReset = lambda: None
+simple.servermanager, simple.paraview, paraview.simple = Thing("servermanager", (), {}), paraview, simple
+sys.modules.update({"paraview": paraview, "paraview.simple": simple})
+exec(open("r/view.py").read(), {"__file__": "r/view.py", "__name__": "__main__"})
+
+shown = [(t, t.args[0]) for t in made if t.kind == "Show"]
+surface = [d for d, source in shown if getattr(source, "registrationName", "") == "surface without stripe"]
+tubes = [source for d, source in shown if source.kind == "Tube" and source.Input.registrationName == "turn orbits"]
+assert len(surface) == 1 and 0.3 <= surface[0].Opacity <= 0.5, surface
+assert len(tubes) == 2 and all(0.0005 < t.Radius < 0.003 for t in tubes), tubes
+assert not [d for d, source in shown if getattr(source, "registrationName", "") == "turn orbits"]
+)";
+
 }  // namespace
+
+// Trails run inside the rotor: the surface lets them be seen, and they are thick enough to be.
+TEST(View, TrailsAreSeenThroughTheSurface) {
+  const DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
+  ASSERT_EQ(view(r.folder, "r turn").exit, 0);
+  std::ofstream(r.folder / "stand_in.py") << stand_in;
+  EXPECT_EQ(std::system(("cd '" + r.folder.string() + "' && /usr/bin/python3 stand_in.py").c_str()),
+            0);
+}
 
 TEST(View, ScriptNamesFramesAndArraysThatThereAre) {
   const DeckRun r(deck);
