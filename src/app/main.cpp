@@ -11,6 +11,7 @@
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -317,23 +318,64 @@ void check_command(const CLI::App& app, const std::string& word) {
                            : fmt::format("did you mean '{}'?", near.front()));
 }
 
-/// Options that the command does not have.
-void check_options(const CLI::App& app, const std::vector<std::string>& arguments) {
-  const auto chosen = app.get_subcommands();
-  if (chosen.empty()) return;
+/// Null without it.
+const CLI::App* command_named(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (c->get_name() == name) return c;
+  return nullptr;
+}
+
+/// Long names with their dashes, short ones too.
+std::vector<std::string> options_of(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::Option* o : chosen.front()->get_options())
+  for (const CLI::Option* o : command.get_options()) {
     for (const std::string& n : o->get_lnames())
       names.push_back("--" + n);
+    for (const std::string& n : o->get_snames())
+      names.push_back("-" + n);
+  }
+  return names;
+}
+
+std::string hint_for(const std::string& option, const std::vector<std::string>& names,
+                     const std::string& command) {
+  const bool one_dash = option.size() > 2 && option[1] != '-';
+  if (one_dash && std::find(names.begin(), names.end(), "-" + option) != names.end())
+    return fmt::format("did you mean '-{}'?", option);
+  const auto near = option.size() > 2 ? deck::nearest(option, names) : std::vector<std::string>();
+  return near.empty() ? fmt::format("`{} --help` lists them", command)
+                      : fmt::format("did you mean '{}'?", near.front());
+}
+
+/// Whether a word is an option, and one that there is; short ones may have their value behind them.
+bool is_unknown_option(const std::string& option, const std::vector<std::string>& names) {
+  if (option.size() < 2 || option[0] != '-' || option == "--") return false;
+  const auto has = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (option[1] == '-') return !has(option);
+  if (std::isdigit(static_cast<unsigned char>(option[1]))) return false;  // a number
+  return !has(option.substr(0, 2)) || has("-" + option);
+}
+
+/// Options that the command does not have, or that stand before it.
+void check_options(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const CLI::App* command = &app;
+  std::string called = "whirl";
   for (const std::string& a : arguments) {
+    if (command == &app)
+      if (const CLI::App* chosen = command_named(app, a)) {
+        command = chosen;
+        called += " " + a;
+        continue;
+      }
     const std::string option = a.substr(0, a.find('='));
-    if (option.rfind("--", 0) != 0 || option == "--" ||
-        std::find(names.begin(), names.end(), option) != names.end())
-      continue;
-    const auto near = deck::nearest(option, names);
-    bad_usage(fmt::format("`whirl {}` has no option '{}'", chosen.front()->get_name(), option),
-              near.empty() ? fmt::format("`whirl {} --help` lists them", chosen.front()->get_name())
-                           : fmt::format("did you mean '{}'?", near.front()));
+    const std::vector<std::string> names = options_of(*command);
+    if (is_unknown_option(option, names))
+      bad_usage(fmt::format("`{}` has no option '{}'", called, option),
+                command != &app || deck::nearest(option, names).size() > 0
+                    ? hint_for(option, names, called)
+                    : "options stand behind the command: whirl run deck.toml --jobs 2");
   }
 }
 
@@ -364,11 +406,8 @@ int command_line(int argc, char** argv) {
   check_command(app, argv[1]);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError& e) {
-    check_options(app, {argv + 2, argv + argc});
-    app.exit(e);
-    return static_cast<int>(Exit::usage);
   } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) check_options(app, {argv + 1, argv + argc});
     const int code = app.exit(e);  // prints help, version or the message
     return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
   }

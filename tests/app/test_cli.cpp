@@ -125,6 +125,30 @@ TEST_F(Cli, MistakesGoToStandardError) {
       "a deck.toml: 2 errors\n");
 }
 
+// As for keys of a deck: the nearest there is, also where something else is missing too.
+TEST_F(Cli, MisspeltOptionsHaveAHint) {
+  write("good.toml", good);
+  const auto says = [&](const char* arguments, const char* option, const char* hint) {
+    const Result r = whirl(arguments);
+    EXPECT_EQ(r.code, 2) << arguments;
+    EXPECT_NE(r.err.find(std::string("has no option '") + option + "'"), std::string::npos)
+        << arguments << ": " << r.err;
+    EXPECT_NE(r.err.find(hint), std::string::npos) << arguments << ": " << r.err;
+  };
+  says("check good.toml --resolvd", "--resolvd", "did you mean '--resolved'?");
+  says("check --resolvd", "--resolvd", "did you mean '--resolved'?");  // no deck either
+  says("run good.toml --jbos=2", "--jbos", "did you mean '--jobs'?");
+  says("run good.toml -jobs 2", "-jobs", "did you mean '--jobs'?");
+  says("run good.toml -output there it_is", "-output", "did you mean '--output'?");
+  says("run good.toml -x", "-x", "`whirl run --help` lists them");
+  says("run good.toml --nothing-like-it", "--nothing-like-it", "`whirl run --help` lists them");
+  says("--verison", "--verison", "did you mean '--version'?");
+  says("--jobs 2 run good.toml", "--jobs", "options stand behind the command");
+  // what is right is not complained about
+  EXPECT_EQ(whirl("run good.toml -j many").err.find("has no option"), std::string::npos);
+  EXPECT_EQ(whirl("run -j2").err.find("has no option"), std::string::npos);
+}
+
 TEST_F(Cli, NoColourWithoutATerminal) {
   write("bad.toml", "format = 2\n");
   const Result r = whirl("check bad.toml", "TERM=xterm");
