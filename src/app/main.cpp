@@ -373,7 +373,7 @@ void check_options(const CLI::App& app, const std::vector<std::string>& argument
     const std::vector<std::string> names = options_of(*command);
     if (is_unknown_option(option, names))
       bad_usage(fmt::format("`{}` has no option '{}'", called, option),
-                command != &app || deck::nearest(option, names).size() > 0
+                command != &app || !deck::nearest(option, names).empty()
                     ? hint_for(option, names, called)
                     : "options stand behind the command: whirl run deck.toml --jobs 2");
   }

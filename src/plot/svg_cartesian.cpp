@@ -354,8 +354,11 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
   std::vector<Point> seen;
   look_over(a, p, seen);
   add_bodies(a, p, seen);
-  f.legend_outside = entries.size() > 8 || size.h > 0.6 * height ||
-                     legend_hides(entries, frame, seen, places_of_names(a, p.x, p.y, frame));
+  std::vector<Box> names;
+  for (const RuleName& name : places_of_names(a, p.x, p.y, frame))
+    names.push_back(name.at);
+  f.legend_outside =
+      entries.size() > 8 || size.h > 0.6 * height || legend_hides(entries, frame, seen, names);
   const double legend = f.legend_outside ? size.w + 6 : 0.0;
   p = data;
   place(p, a, frame_beside(first, legend));
@@ -366,7 +369,7 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
 }
 
 NotePlan plan_notes(const Axes& a, const Box& frame) {
-  if (a.notes.empty()) return {};
+  if (a.notes.empty() && a.rules.empty()) return {};
   Prepared p;
   data_range(a, p.x, p.y, p.r);
   place(p, a, frame);
@@ -384,6 +387,32 @@ double left_margin(const Axes& a, const Box& frame) {
 }
 
 namespace {
+
+/// What the script reads, the title, and the path that clips the curves, whose id is returned.
+std::string begin_cartesian(Canvas& c, const Axes& a, const Prepared& p, const Box& b,
+                            const CartesianFlags& f) {
+  c.add("<g class=\"axes\" data-kind=\"xy\" data-box=\"" + number_text(b.x) + " " +
+        number_text(b.y) + " " + number_text(b.w) + " " + number_text(b.h) + '"');
+  axis_attributes(c, "x", a.x, p.x);
+  axis_attributes(c, "y", a.y, p.y);
+  if (has_right(a)) axis_attributes(c, "r", a.right, p.r);
+  if (a.equal_aspect) c.add(" data-equal=\"1\"");
+  if (a.share_x) c.add(" data-share=\"1\"");
+  if (f.hide_x) c.add(" data-hidex=\"1\"");
+  if (!a.x.tick_labels.empty()) c.add(" data-fixed=\"1\"");
+  c.add(">\n");
+  if (!a.title.empty())
+    c.text_within(c.narrow ? narrow_width - b.x - 2 : infinity, b.x, b.y - 9, a.title, title_size,
+                  "start", "font-weight=\"600\"");
+  std::string clip = c.id();
+  c.add("<clipPath id=\"" + clip + "\"><rect");
+  c.attr("x", b.x);
+  c.attr("y", b.y);
+  c.attr("width", b.w);
+  c.attr("height", b.h);
+  c.add("/></clipPath>\n");
+  return clip;
+}
 
 /// Below the frame: the legend of a narrow drawing, and the key.
 void draw_below(Canvas& c, const std::vector<LegendEntry>& entries, const Box& b,
@@ -409,32 +438,12 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   data_range(a, p.x, p.y, p.r);
   place(p, a, b);
   const bool right = has_right(a);
-  c.add("<g class=\"axes\" data-kind=\"xy\" data-box=\"" + number_text(b.x) + " " +
-        number_text(b.y) + " " + number_text(b.w) + " " + number_text(b.h) + '"');
-  axis_attributes(c, "x", a.x, p.x);
-  axis_attributes(c, "y", a.y, p.y);
-  if (right) axis_attributes(c, "r", a.right, p.r);
-  if (a.equal_aspect) c.add(" data-equal=\"1\"");
-  if (a.share_x) c.add(" data-share=\"1\"");
-  if (f.hide_x) c.add(" data-hidex=\"1\"");
-  if (!a.x.tick_labels.empty()) c.add(" data-fixed=\"1\"");
-  c.add(">\n");
-  if (!a.title.empty())
-    c.text_within(c.narrow ? narrow_width - b.x - 2 : infinity, b.x, b.y - 9, a.title, title_size,
-                  "start", "font-weight=\"600\"");
-  const std::string clip = c.id();
-  c.add("<clipPath id=\"" + clip + "\"><rect");
-  c.attr("x", b.x);
-  c.attr("y", b.y);
-  c.attr("width", b.w);
-  c.attr("height", b.h);
-  c.add("/></clipPath>\n");
+  const std::string clip = begin_cartesian(c, a, p, b, f);
   draw_grid(c, p, b);
   std::vector<Point> seen;
   std::vector<PinJob> pins;
   std::vector<Box> taken;
   const auto entries = legend_entries(a, k);
-  const bool outside = f.legend_outside;
   c.add("<g clip-path=\"url(#" + clip + ")\">");
   PlotGroup plot(c, p.x, p.y, right ? p.r : p.y);
   if (!a.heat.empty()) draw_heat(c, a.heat.front(), p);
@@ -451,14 +460,14 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
-  const Box size = legend_size_of(entries, f.legend_width);
-  if (f.legend_width <= 0)
-    draw_legend(c, entries, b, seen, taken,
-                outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
-                                           : a.heat.empty() ? 8
-                                                            : colorbar),
-                              b.y, size.w, size.h}
-                        : Box{});
+  if (f.legend_width <= 0) {
+    const double beside = right            ? widest_label(p.tr) + tick_length + 30
+                          : a.heat.empty() ? 8
+                                           : colorbar;
+    const Box size = legend_size_of(entries);
+    const Box outside{b.right() + beside, b.y, size.w, size.h};
+    draw_legend(c, entries, b, seen, taken, f.legend_outside ? outside : Box{});
+  }
   draw_below(c, entries, b, f);
   c.add("</g>\n");
 }

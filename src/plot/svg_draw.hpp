@@ -160,9 +160,13 @@ void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar);
 void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
                  std::vector<Point>& seen, std::vector<PinJob>& pins);
 void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prepared& p);
-/// Where the names of the rules stand, one a rule; empty boxes of those that have none or are not
-/// in sight.
-std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b);
+/// Where the name of a rule stands; an empty box of one that has none or is not in sight. Below the
+/// fourth row of names the others are numbers, and stand in the key.
+struct RuleName {
+  Box at;
+  int number = 0;  ///< 0: its label
+};
+std::vector<RuleName> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b);
 /// Height that names of vertical rules take at the top of the frame, px.
 double names_height(const Axes& a, const Scale& x, const Box& b);
 void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b);
@@ -171,7 +175,7 @@ void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b);
 void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
                std::vector<Box>& taken, const std::vector<Point>& seen);
 /// Where the notes of some axes stand: beside their points, or, where there is no room for a text, a
-/// number there and the text in a key beneath.
+/// number there and the text in a key beneath, behind those of the rules.
 struct PlacedNote {
   std::size_t note = 0;
   Point point{0, 0};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace whirl::plot::svg {
 namespace {
@@ -317,9 +318,9 @@ Box place_beside(const Point& p, double w, const Box& frame, const std::vector<B
                                                                   {-1.0, -0.4},
                                                                   {1.0, 0.4},
                                                                   {-1.0, 0.4}}};
-  for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0, 125.0})
+  for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0, 125.0}) {
+    if (reach > furthest) break;
     for (const auto& [sx, sy] : directions) {
-      if (reach > furthest) break;
       const Box t{sx > 0   ? p.x + reach
                   : sx < 0 ? p.x - reach - w
                            : p.x - w / 2,
@@ -329,6 +330,7 @@ Box place_beside(const Point& p, double w, const Box& frame, const std::vector<B
       best = cost;
       at = t;
     }
+  }
   return at;
 }
 
@@ -378,8 +380,14 @@ NotePlacer::NotePlacer(const Axes& a, const Prepared& p, const Box& frame,
       frame_(frame),
       seen_(seen) {
   plan_.frame = frame;
-  for (const Box& name : places_of_names(a, p.x, p.y, frame))
-    if (name.w > 0) taken_.push_back(name);
+  const std::vector<RuleName> names = places_of_names(a, p.x, p.y, frame);
+  std::map<int, std::string> numbered;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].at.w > 0) taken_.push_back(names[i].at);
+    if (names[i].number > 0) numbered[names[i].number] = a.rules[i].label;
+  }
+  for (const auto& [number, label] : numbered)
+    plan_.key.push_back(std::to_string(number) + ": " + label);
   for (std::size_t i = 0; i < a.notes.size(); ++i) {
     const Note& n = a.notes[i];
     const Point q{p.x(n.x), (n.right_axis ? p.r : p.y)(n.y)};
@@ -497,7 +505,8 @@ std::pair<double, std::size_t> key_columns(const NotePlan& plan, double width) {
 double key_height(const NotePlan& plan, double width) {
   if (plan.key.empty()) return 0;
   const std::size_t columns = key_columns(plan, width).second;
-  return 8 + key_row * static_cast<double>((plan.key.size() + columns - 1) / columns);
+  const std::size_t rows = (plan.key.size() + columns - 1) / columns;
+  return 8 + key_row * static_cast<double>(rows);
 }
 
 /// Column by column.
@@ -506,33 +515,66 @@ void draw_key(Canvas& c, const NotePlan& plan, const Point& corner, double width
   const auto [each, columns] = key_columns(plan, width);
   const std::size_t rows = (plan.key.size() + columns - 1) / columns;
   c.add("<g class=\"key\">");
-  for (std::size_t i = 0; i < plan.key.size(); ++i)
-    c.text_within(width, corner.x + each * static_cast<double>(i / rows),
-                  corner.y + 14 + key_row * static_cast<double>(i % rows), plan.key[i], note_size,
+  for (std::size_t i = 0; i < plan.key.size(); ++i) {
+    const std::size_t column = i / rows, row = i % rows;
+    c.text_within(width, corner.x + each * static_cast<double>(column),
+                  corner.y + 14 + key_row * static_cast<double>(row), plan.key[i], note_size,
                   "start");
+  }
   c.add("</g>\n");
 }
 
-std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b) {
-  std::vector<Box> names, taken;
-  for (const Rule& r : a.rules) {
-    names.emplace_back();
-    const double v = r.vertical ? x(r.value) : y(r.value);
-    const double w = note_width(r.label) + 5;  // apart from its neighbours
+namespace {
+
+constexpr int name_rows = 4;
+
+/// Beside a rule at v px, in the first row that is free; the last one otherwise.
+Box beside_rule(const Rule& r, double v, double w, const Box& b, double most,
+                const std::vector<Box>& taken) {
+  Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
+  if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
+  for (int k = 0; k < most && !is_free(at, taken); ++k) {
+    if (r.vertical)
+      at.y += 14;
+    else
+      at.x -= w + 10;
+  }
+  return at;
+}
+
+}  // namespace
+
+std::vector<RuleName> places_of_names(const Axes& a, const Scale& x, const Scale& y, const Box& b) {
+  constexpr double apart = 5;
+  std::vector<RuleName> names(a.rules.size());
+  std::vector<Box> taken;
+  std::vector<std::size_t> rest;
+  const auto px = [&](const Rule& r) { return r.vertical ? x(r.value) : y(r.value); };
+  for (std::size_t i = 0; i < a.rules.size(); ++i) {
+    const Rule& r = a.rules[i];
+    const double v = px(r), w = note_width(r.label) + apart;
     if (r.label.empty() || std::isnan(v) ||
         (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
       continue;
-    Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
-    if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
-    const double most = r.vertical ? b.h / 14 - 1 : b.w / (w + 10) - 1;
-    for (int k = 0; k < most && !is_free(at, taken); ++k) {
-      if (r.vertical)
-        at.y += 14;
-      else
-        at.x -= w + 10;
+    const double most =
+        r.vertical ? std::min<double>(name_rows - 1, b.h / 14 - 1) : b.w / (w + 10) - 1;
+    const Box at = beside_rule(r, v, w, b, most, taken);
+    if (r.vertical && !is_free(at, taken)) {
+      rest.push_back(i);
+      continue;
     }
     taken.push_back(at);
-    names.back() = at;
+    names[i].at = at;
+  }
+  std::stable_sort(rest.begin(), rest.end(),
+                   [&](std::size_t i, std::size_t j) { return px(a.rules[i]) < px(a.rules[j]); });
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    const Rule& r = a.rules[rest[k]];
+    RuleName& name = names[rest[k]];
+    name.number = static_cast<int>(k) + 1;
+    const double w = note_width(std::to_string(name.number)) + apart;
+    name.at = beside_rule(r, px(r), w, b, b.h / 14 - 1, taken);
+    taken.push_back(name.at);
   }
   return names;
 }
@@ -540,23 +582,24 @@ std::vector<Box> places_of_names(const Axes& a, const Scale& x, const Scale& y, 
 double names_height(const Axes& a, const Scale& x, const Box& b) {
   double lowest = b.y;
   const Scale nowhere{0, 1, false, nan, nan};  // of names beside level rules
-  for (const Box& at : places_of_names(a, x, nowhere, b))
-    if (at.w > 0) lowest = std::max(lowest, at.bottom() + 2);
+  for (const RuleName& name : places_of_names(a, x, nowhere, b))
+    if (name.at.w > 0) lowest = std::max(lowest, name.at.bottom() + 2);
   return lowest - b.y;
 }
 
 void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const NotePlan& plan,
                 std::vector<Box>& taken) {
-  const std::vector<Box> names = places_of_names(a, p.x, p.y, b);
+  const std::vector<RuleName> names = places_of_names(a, p.x, p.y, b);
   for (std::size_t i = 0; i < a.rules.size(); ++i) {
     const Rule& r = a.rules[i];
-    const Box& at = names[i];
+    const Box& at = names[i].at;
     if (!(at.w > 0)) continue;
     const double v = r.vertical ? p.x(r.value) : p.y(r.value);
     taken.push_back(at);
     c.add("<g class=\"pin\" data-p=\"" + number_text(r.vertical ? v : b.right()) + " " +
           number_text(r.vertical ? b.y : v) + "\" data-lock=\"" + (r.vertical ? "y" : "x") + "\">");
-    c.text(at.x, at.y + 11, r.label, note_size);
+    c.text(at.x, at.y + 11, names[i].number > 0 ? std::to_string(names[i].number) : r.label,
+           note_size);
     c.add("</g>\n");
   }
   const double dx = b.x - plan.frame.x, dy = b.y - plan.frame.y;

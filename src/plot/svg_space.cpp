@@ -120,6 +120,7 @@ class SpaceDrawing {
   void draw_axis(Index d);
   double draw_ticks(Index d, const Edge& edge);
   void put_title(const std::string& title, const Point& wanted, const char* anchor);
+  Box place_of_legend() const;
   void append_motion(std::string& to, const std::array<Complex, 3>& motion) const;
   void draw_curve(std::size_t i);
 
@@ -304,6 +305,8 @@ void SpaceDrawing::draw_axis(Index d) {
     const double x = edge.middle.x + reach * edge.ox - 6, y = edge.middle.y;
     c_.text(x, y, title, label_size, "middle",
             "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
+    const double length = wide_fonts * text_width(title, label_size);
+    labels_.push_back({x - 10, y - length / 2, 13, length});
     return;
   }
   put_title(title, {edge.middle.x + reach * edge.ox, edge.middle.y + reach * edge.oy + 6},
@@ -397,6 +400,20 @@ void SpaceDrawing::draw_curve(std::size_t i) {
     draw_pins(c_, qx, qy, s.style, color, static_cast<int>(i), false, " " + name);
 }
 
+/// The upper right corner, or the next that no label stands in; below the box of a narrow drawing.
+Box SpaceDrawing::place_of_legend() const {
+  const double left = cell_.x + 4, right = cell_.right() - legend_.w - 4;
+  const double top = cell_.y + top_, bottom = cell_.bottom() - legend_.h - 2;
+  if (c_.narrow) return {left, bottom, legend_.w, legend_.h};
+  for (const Point& corner : {Point{right, top}, {left, top}, {right, bottom}, {left, bottom}}) {
+    const Box place{corner.x, corner.y, legend_.w, legend_.h};
+    if (std::none_of(labels_.begin(), labels_.end(),
+                     [&](const Box& label) { return label.overlaps(place); }))
+      return place;
+  }
+  return {right, top, legend_.w, legend_.h};
+}
+
 void SpaceDrawing::draw() {
   begin();
   c_.add("<g class=\"box\">\n");
@@ -409,9 +426,7 @@ void SpaceDrawing::draw() {
   for (std::size_t i = 0; i < a_.space.size(); ++i)
     draw_curve(i);
   plot.end();
-  const double x = c_.narrow ? cell_.x + 4 : cell_.right() - legend_.w - 4;
-  const double y = c_.narrow ? cell_.bottom() - legend_.h - 2 : cell_.y + top_;
-  draw_legend(c_, entries_, cell_, seen_, {}, {x, y, legend_.w, legend_.h},
+  draw_legend(c_, entries_, cell_, seen_, {}, place_of_legend(),
               c_.narrow ? narrow_legend_width : 0);
   c_.add("</g>\n");
 }

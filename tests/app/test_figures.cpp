@@ -332,6 +332,24 @@ TEST(Figures, CrowdedCriticalSpeedsHaveAKey) {
   EXPECT_EQ(count(svg, " rpm</text>"), marks.size());
 }
 
+TEST(Figures, CrowdedStationsHaveAKey) {
+  plot::ModeShape mode{"", {0.0, 1.0}, {0.5, 1.0}, {0.0, 0.0}, {}};
+  for (int k = 11; k >= 0; --k)
+    mode.stations.emplace_back("labyrinth " + std::to_string(k), 0.4 + 0.01 * k);
+  const std::string svg = plot::render_svg(plot::plot_mode_shape("mode", "mode", mode));
+  EXPECT_EQ(test::FigureCheck(svg).faults(), std::vector<std::string>());
+  const std::string key = svg.substr(std::min(svg.size(), svg.find("class=\"key\"")));
+  EXPECT_EQ(count(svg, "labyrinth "), 12u);
+  EXPECT_GE(count(key, "labyrinth "), 6u);
+  int last = -1;  // from left to right
+  for (std::size_t at = key.find(": labyrinth "); at != std::string::npos;
+       at = key.find(": labyrinth ", at + 1)) {
+    const int station = std::stoi(key.substr(at + 12));
+    EXPECT_GT(station, last);
+    last = station;
+  }
+}
+
 // What the figures of every deck are looked at with sees names on one another.
 TEST(Figures, TextsOnTextsAreAFault) {
   const auto with = [](const char* y) {
