@@ -89,6 +89,7 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
   running.ratio.resize(at(job.system().lines()), 0.0);
   running.axially_free = job.built.axially_free;
   running.time = state.t;
+  running.hysteretic = false;  // a motion in time has its stand-in
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
   analysis::Linearizer linear(job.system(), running, o);

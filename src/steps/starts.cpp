@@ -24,6 +24,7 @@ analysis::Linearizer linearizer_of(const run::Job& job, const run::StepState& st
   running.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
   running.axially_free = job.built.axially_free;
   running.time = start.state.t;
+  running.hysteretic = false;  // the motion that begins has its stand-in
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
   return analysis::Linearizer(job.system(), running, o);

@@ -803,6 +803,74 @@ integrator = {{ tolerance = 1e-6 }}
     EXPECT_NEAR(peak(elements, "linear = true\n"), general, 1e-4 * general) << elements;
 }
 
+// Hysteretic damping has no form in time: motions have its stand-in or none, linear ones and those that
+// begin in a steady response as well. (As it is in frequency, a circulation, it drove the fast modes of a
+// linear run beyond all bounds.)
+TEST(NaturalDecks, HystereticDampingIsItsStandInInEveryMotion) {
+  const auto deck = [](const std::string& stand_in, const std::string& step) {
+    return R"(format = 1
+[output]
+report = false
+[[shaft]]
+name = "s"
+material = "steel"
+damping = { internal_loss_factor = 0.02)" +
+           stand_in + R"( }
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 50], ["b", 500, 50]]
+[[disk]]
+name = "D"
+at = "a:end"
+mass = "20 kg"
+Ip = "0.2 kg.m^2"
+Id = "0.1 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[unbalance]]
+at = "D"
+amount = "50 g.mm"
+[[probe]]
+name = "p"
+at = "D"
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = "6000 rpm"
+[[step]]
+name = "t"
+type = "transient"
+integrator = { tolerance = 1e-7 }
+)" + step;
+  };
+  const auto peak = [&](const std::string& stand_in, const std::string& step) {
+    const DeckRun d(deck(stand_in, step));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return d.summary("t").at("peaks").at("p").at("amplitude 0-peak [m]").number();
+  };
+  for (const char* stand_in : {"", ", internal_loss_frequency = \"30 Hz\""}) {
+    const double general = peak(stand_in, "duration = \"0.06 s\"\n");
+    EXPECT_NEAR(peak(stand_in, "duration = \"0.06 s\"\nlinear = true\n"), general, 1e-5 * general)
+        << stand_in;
+    // a steady motion stays what it is
+    const std::string steady = "start = \"unbalance_response\"\n";
+    const double first = peak(stand_in, "duration = \"0.02 s\"\n" + steady);
+    EXPECT_NEAR(peak(stand_in, "duration = \"0.1 s\"\n" + steady), first, 1e-5 * first) << stand_in;
+  }
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {

@@ -116,7 +116,9 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
       q_(system.size()),
       v_(system.size()),
       steady_(system.make_workspace()) {
-  Linearizer linear(system, running, options);
+  SteadyRotation in_time = running;
+  in_time.hysteretic = false;  // motions at large take their stand-in too
+  Linearizer linear(system, in_time, options);
   linear.start_from(start);
   const la::MCK& m = linear.at(Omega);
   const system::State& e = linear.equilibrium().state;
