@@ -68,9 +68,17 @@ bool ModeSolver::Impl::look_near(Complex place, double distance) {
     if (!near.search(near.krylov_complex, seed)) break;
   crowds = std::move(near.crowds);
   bool any = false;
-  for (Pair& p : near.known)
-    if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty)
+  std::vector<Pair> free;
+  for (Pair& p : near.known) {
+    if (p.rigid)
+      free.push_back(std::move(p));
+    else if (p.from != old && std::abs(p.lambda) > p.uncertainty)
       any = add(std::move(p)) || any;
+  }
+  if (add_rigid(free)) {  // a list that was long enough before the search came to zero
+    add_companions();
+    any = true;
+  }
   sort_known();
   return any;
 }

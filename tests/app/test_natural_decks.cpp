@@ -871,6 +871,120 @@ integrator = { tolerance = 1e-7 }
   }
 }
 
+// A loss factor beside tilting pads: one heavily damped motion of many has no frequency of its own, beyond
+// all that a verdict needs. It ended the whole step (E77).
+TEST(NaturalDecks, OneMotionWithoutAFrequencyOfItsOwnEndsNoVerdict) {
+  const DeckRun d(R"(format=1
+[output]
+report=false
+[model]
+gravity="9.81 m/s^2"
+[[shaft]]
+name="rotor"
+material="steel"
+damping={internal_loss_factor=0.0175}
+columns=["name","length[mm]","od[mm]","id[mm]"]
+rows=[["s0",314.3,88.49,35.4],["s1",358.39,25.13,0],["s2",365.68,68.13,27.25],["s3",77.79,55.65,0],["s4",227.11,62.93,0]]
+[[bearing]]
+name="DE"
+at="s1:mid"
+type="tilting_pad"
+pads=4
+first_pivot="-90 deg"
+preload=0.14
+diameter="25.13 mm"
+length="11.71 mm"
+clearance="49.43 um"
+iso_vg=32
+temperature="45 degC"
+[[bearing]]
+name="NDE"
+at="s4:mid"
+type="tilting_pad"
+pads=4
+first_pivot="-54 deg"
+preload=0.15
+diameter="62.93 mm"
+length="42.14 mm"
+clearance="101.5 um"
+iso_vg=32
+temperature="45 degC"
+[[bearing]]
+name="thrust"
+at="s0:start"
+type="linear"
+kxx="1e8 N/m"
+cxx="1e4 N.s/m"
+[[bearing]]
+name="xc"
+at="s2:mid"
+type="cross_coupling"
+k="5.13e+04 N/m"
+[[step]]
+name="st"
+type="stability"
+speed={values=["2700 rpm","4500 rpm"]}
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("certified up to")) << d.log;
+  const Columns t = d.csv("st_onset.csv");
+  ASSERT_EQ(t.rows.size(), 1u);
+  EXPECT_NEAR(t.rows.front()[t.column("speed [rpm]")], 3803.3, 0.5);
+}
+
+// The free spin of a small rotor on a damper: a double zero beside slow real roots. A list that was long
+// enough before the search came to it was INCOMPLETE, or rounding hid it from a small shift.
+TEST(NaturalDecks, TheFreeSpinOfASmallRotorIsInEveryList) {
+  for (const int modes : {1, 4, 6, 8, 10, 12}) {
+    const DeckRun d(fmt::format(R"(format=1
+[output]
+report=false
+[model]
+gravity="0 m/s^2"
+[[shaft]]
+name="rotor"
+material="titanium"
+columns=["name","length[mm]","od[mm]","id[mm]"]
+rows=[["s0",43.87,14.55,5.82],["s1",40.18,5.91,0],["s2",64.91,5.13,0],["s3",62.33,9.2,0]]
+[[bearing]]
+name="DE"
+at="s0:mid"
+type="linear"
+kyy="3.279e+04 N/m"
+kzz="3.279e+04 N/m"
+kyz="0 N/m"
+kzy="-0 N/m"
+cyy="2.398 N.s/m"
+czz="2.398 N.s/m"
+support={{mass="0.0113 kg",kyy="9.18e+04 N/m",kzz="1.38e+05 N/m",cyy="2.19 N.s/m",czz="2.19 N.s/m"}}
+[[bearing]]
+name="NDE"
+at="s3:mid"
+type="squeeze_film"
+film="finite"
+diameter="14.72 mm"
+length="4.416 mm"
+clearance="29.4 um"
+viscosity="10 mPa.s"
+stiffness="2.3e+04 N/m"
+[[bearing]]
+name="thrust"
+at="s0:start"
+type="linear"
+kxx="1e8 N/m"
+cxx="1e4 N.s/m"
+[[step]]
+name="m"
+type="modal"
+speed="2000 rpm"
+modes={}
+)",
+                                modes));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    EXPECT_TRUE(d.says("Hz, complete,")) << d.log;
+  }
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {

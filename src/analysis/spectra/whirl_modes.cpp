@@ -237,9 +237,12 @@ void WhirlSolver::solve_hysteretic(double Omega) {
     if (group.size() > 1) separate(Omega, group);
     for (const la::Mode& mode : group) {
       const auto settled = settle_rate(Omega, mode);
+      if (!settled && options_.certify) continue;  // the count says whether it is missed
       if (!settled)
         throw run_error("E77",
-                        "hysteretic damping: a whirl mode was lost on the way to its own frequency",
+                        fmt::format("hysteretic damping: a whirl mode was lost on the way to its "
+                                    "own frequency at {:.6g} rpm",
+                                    to_rpm(Omega)),
                         "use a smaller internal_loss_factor, or internal_beta");
       modes_.push_back(describe_mode(*settled, *matrices_, linear_));
     }
