@@ -274,6 +274,7 @@ class StationDeck {
       notes_.refuse("there are no columns of lengths and outer diameters",
                     "titles like 'Length [mm]' and 'OD [mm]'; of coefficients 'speed [rpm]' and "
                     "'Kxx [N/m]'");
+    refuse_layers();
     Value root = Value::make_table();
     root.add("format", Value::of_integer(1));
     root.add("title", Value::of_text(fmt::format("Converted from {}", notes_.file())));
@@ -298,6 +299,33 @@ class StationDeck {
   }
 
  private:
+  /// Layers of one element stand in rows of their own: put one after the other they would make the
+  /// rotor longer.
+  void refuse_layers() const {
+    constexpr const char* hint =
+        "make one row of the layers of an element: the outer diameter of what is stiff, and masses "
+        "that are not as disks; tables of ROSS are read with their layers (.toml, .json)";
+    std::size_t layer = cells_.header.size();
+    for (std::size_t k = 0; k < cells_.header.size(); ++k)
+      if (const std::string title = letters(cells_.header[k].text);
+          title == "layer" || title == "layers" || title == "sublayer")
+        layer = k;
+    const auto text = [](const std::vector<Cell>& row, std::size_t k) {
+      return k < row.size() ? row[k].text : std::string();
+    };
+    const Column* name = find(columns_, "name");
+    for (std::size_t r = 1; r < cells_.rows.size(); ++r) {
+      const auto &row = cells_.rows[r], &first = cells_.rows.front();
+      if (layer < cells_.header.size() && text(row, layer) != text(first, layer))
+        notes_.refuse("the table has layers of elements in rows of their own", hint, {},
+                      row.front().line);
+      const bool numbered = name && number_of(name->texts[r]).has_value();
+      if (numbered && name->texts[r] == name->texts[r - 1])
+        notes_.refuse(fmt::format("the number {} stands in two rows", name->texts[r]), hint, {},
+                      row.front().line);
+    }
+  }
+
   std::string material_of(std::size_t row) {
     const Column *E = find(columns_, "E"), *G = find(columns_, "G"),
                  *rho = find(columns_, "density");

@@ -151,6 +151,17 @@ TEST(Convert, LayersBecomeSleevesAndSums) {
   EXPECT_NEAR(read.model.shafts[0].sections[0].constants->EI / EI, 1, 1e-11);
 }
 
+// One after the other the layers of an element would make the rotor longer.
+TEST(Convert, LayersInRowsOfAStationTableAreRefused) {
+  for (const char* text :
+       {"Element,Layer,Length [mm],OD [mm],ID [mm]\n1,1,100,50,0\n1,2,100,80,50\n"
+        "2,1,200,60,0\n",
+        "Element,Length [mm],OD [mm],ID [mm]\n1,100,50,0\n1,100,80,50\n"})
+    EXPECT_THROW(convert::convert_csv(text, "x.csv"), Error) << text;
+  EXPECT_NO_THROW(convert::convert_csv(
+      "Element,Layer,Length [mm],OD [mm],ID [mm]\n1,1,100,50,0\n2,1,100,80,50\n", "x.csv"));
+}
+
 TEST(Convert, PedestalsAndTablesOfRoss) {
   const std::string json =
       "{" + ross_shaft(0, 0.5, 0.05) + "," + ross_shaft(1, 0.5, 0.05) +
