@@ -128,12 +128,12 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
 io::Table probabilities_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Probabilities";
-  t.nan_means = "no run gave a value";
+  t.nan_means = "no run gave a value; an error: none of weighted samples lies there";
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
                {"beyond", "-", ""},
                {"probability", "-", "of independent runs that gave a value"},
-               {"error", "-", "standard error"},
+               {"error", "-", "standard error; of none or all, what they leave open at 95 %"},
                {"runs", "-", "that lie there"}};
   for (const Limit& limit : plan.limits) {
     const Probability p =
@@ -345,7 +345,15 @@ Probability probability_beyond(const std::vector<double>& values,
   }
   if (n == 0) return {nan, nan, 0};
   p.value /= n;
-  p.error = n > 1 ? std::sqrt(std::max(0.0, squares / n - p.value * p.value) / (n - 1)) : nan;
+  const bool weighted =
+      std::any_of(weights.begin(), weights.end(), [](double w) { return w != 1.0; });
+  // Of none or all of n runs nothing spreads: the probability that leaves this outcome one chance in
+  // twenty (for weighted samples there is none).
+  constexpr double chance = 0.05;
+  if (p.runs == 0 || (!weighted && static_cast<double>(p.runs) == n))
+    p.error = weighted ? nan : 1.0 - std::pow(chance, 1.0 / n);
+  else
+    p.error = n > 1 ? std::sqrt(std::max(0.0, squares / n - p.value * p.value) / (n - 1)) : nan;
   return p;
 }
 

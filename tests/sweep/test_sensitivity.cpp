@@ -143,6 +143,13 @@ TEST(WeightedSamples, OfEqualWeightAreOrdinaryOnes) {
   const Probability p = probability_beyond(x, one, 3.5, true);
   EXPECT_DOUBLE_EQ(p.value, 0.4);
   EXPECT_DOUBLE_EQ(p.error, std::sqrt(0.4 * 0.6 / 4));
+  // none and all: with that probability one outcome in twenty is this one
+  for (const double limit : {9.0, 0.0}) {
+    const Probability sure = probability_beyond(x, one, limit, true);
+    EXPECT_DOUBLE_EQ(sure.value, limit > 0 ? 0.0 : 1.0);
+    EXPECT_NEAR(std::pow(1 - sure.error, 5), 0.05, 1e-12);
+  }
+  EXPECT_TRUE(std::isnan(probability_beyond(x, std::vector<double>(6, 0.5), 9, true).error));
 }
 
 TEST(Densities, IntegrateToOneOverTheirQuantiles) {
