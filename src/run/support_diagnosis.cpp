@@ -78,9 +78,13 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
   }
   const Conditions now(job, last->state);
   const char* sep = " ";
+  bool damper = false;
   for (const SupportCondition& c : job.built.conditions) {
     const SupportCondition::State s = now.of(c);
     if (!s.film) continue;
+    constexpr double at_its_end = 0.9;
+    damper |= s.displacement > at_its_end * s.gap &&
+              !model::traits_of(job.model.bearings[c.bearing].law).follows_spin;
     d.message += fmt::format("{}bearing '{}' carries {:.4g} N at eccentricity {:.3f}", sep, c.name,
                              s.load, s.displacement / s.gap);
     if (s.capacity > 0)
@@ -89,7 +93,10 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
     sep = ", ";
     if (d.where.line == 0) d.where = c.where;
   }
-  if (!hot) d.hint = hint;
+  constexpr const char* hint_of_dampers =
+      "the film of a damper carries no load that stands still, whatever the speed: its centring "
+      "spring does (a larger 'stiffness'), or a larger clearance takes the sag";
+  if (!hot) d.hint = damper ? hint_of_dampers : hint;
   return Error(failed.exit(), std::move(d));
 }
 
