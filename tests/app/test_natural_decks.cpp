@@ -985,6 +985,81 @@ modes={}
   }
 }
 
+// The search for a critical speed by secants left its bracket for a speed of nearly zero, where films carry
+// nothing (E75 "at 0 rpm" of a search from 300 rpm on). That of the Campbell diagram is 2035 rpm.
+TEST(NaturalDecks, ASearchForACriticalSpeedAsksForNoSpeedBeyondIt) {
+  const DeckRun d(R"(format=1
+[output]
+report=false
+[model]
+gravity="9.81 m/s^2"
+[[shaft]]
+name="rotor"
+material="inconel_718"
+damping={internal_beta="4.4e-07 s",external_beta="3e-05 s"}
+columns=["name","length[mm]","od[mm]","id[mm]"]
+rows=[["s0",286.8,70.5,0],["s1",110.99,63.37,0],["s2",557.73,60.57,0]]
+[[disk]]
+name="D0"
+at="s0:end"
+mass="44.99 kg"
+Ip="1.105 kg.m^2"
+Id="0.9582 kg.m^2"
+[[disk]]
+name="D1"
+at="s1:end"
+mass="41.99 kg"
+Ip="0.6749 kg.m^2"
+Id="0.4585 kg.m^2"
+[[disk]]
+name="D2"
+at="s2:mid"
+mass="34.56 kg"
+Ip="0.2707 kg.m^2"
+Id="0.1685 kg.m^2"
+[[bearing]]
+name="DE"
+at="s0:mid"
+type="tilting_pad"
+pads=5
+first_pivot="-45 deg"
+preload=0.31
+diameter="70.5 mm"
+length="62.9 mm"
+clearance="72.18 um"
+iso_vg=46
+temperature="45 degC"
+[[bearing]]
+name="NDE"
+at="s2:mid"
+type="tilting_pad"
+pads=4
+first_pivot="-90 deg"
+preload=0.4
+diameter="60.57 mm"
+length="48.01 mm"
+clearance="61.71 um"
+iso_vg=46
+temperature="65 degC"
+[[bearing]]
+name="thrust"
+at="s0:start"
+type="linear"
+kxx="1e8 N/m"
+cxx="1e4 N.s/m"
+[[step]]
+name="c"
+type="critical_speeds"
+motion="lateral"
+min_speed="300 rpm"
+max_speed="3000 rpm"
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("c_damped.csv");
+  ASSERT_EQ(t.rows.size(), 1u) << d.log;
+  EXPECT_NEAR(t.rows.front()[t.column("speed [rpm]")], 2035.4, 0.5);
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {

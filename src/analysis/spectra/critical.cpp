@@ -137,6 +137,8 @@ std::optional<Critical> find_critical(WhirlSolver& follower, const CriticalOptio
     f1 = gap(x1, mode);
     if (f1 == f0 || x1 == x0) break;
     const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
+    const double width = k.b - k.a;
+    if (!(x2 > k.a - width && x2 < k.b + width)) return std::nullopt;
     const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
     x0 = x1;
     f0 = f1;
