@@ -41,6 +41,22 @@ void ModeSolver::Impl::drop_unproved() {
   });
 }
 
+bool ModeSolver::Impl::drop_copies() {
+  constexpr double close = 1e-4, weak = 1e-10, much = 100.0;
+  const std::vector<Pair>& all = known;
+  std::vector<Complex> copies;
+  for (const Pair& p : all)
+    if (!p.rigid && p.residual > weak && std::any_of(all.begin(), all.end(), [&](const Pair& q) {
+          return q.residual * much < p.residual &&
+                 std::abs(q.lambda - p.lambda) < close * std::abs(p.lambda);
+        }))
+      copies.push_back(p.lambda);
+  std::erase_if(known, [&](const Pair& p) {
+    return std::find(copies.begin(), copies.end(), p.lambda) != copies.end();
+  });
+  return !copies.empty();
+}
+
 std::vector<Complex> ModeSolver::Impl::known_roots() const {
   std::vector<Complex> roots(static_cast<std::size_t>(double_zeros), 0.0);
   for (const Pair& p : known)
@@ -251,6 +267,7 @@ void ModeSolver::Impl::certify() {
         radius *= 1.023;
       continue;
     }
+    if (c.unknown < 0 && drop_copies()) continue;
     if (c.unknown <= 0) break;
     if (avoid_crowd(c, radius)) continue;
     certificate.where = counter->locate(c.unknown);

@@ -199,9 +199,11 @@ bool Eigenpairs::take(std::vector<Pair>& found, bool near) {
     }
     Pair q = p;
     if (near) q.from = -1;
-    if (polisher.polish(q, opt.tolerance, near) && add(std::move(q))) any = true;
+    const bool polished = polisher.polish(q, opt.tolerance, near);
+    if (polished && add(std::move(q))) any = true;
     // where the shift is small beside the root of what rounding leaves of the stiffness, further
-    else if (!first_order && std::abs(p.lambda) < 0.5 * std::abs(shift) && is_free_motion(p))
+    else if (!polished && !first_order && std::abs(p.lambda) < 0.5 * std::abs(shift) &&
+             is_free_motion(p))
       rigid.push_back(std::move(p));
     else
       rest.push_back(std::move(p));

@@ -57,6 +57,8 @@ struct ModeSolver::Impl : Eigenpairs {
   /// A pair that is no root, or a zero root counted with the free motions already, would hide one
   /// that is missing.
   void drop_unproved();
+  /// Where more are known than there are: pairs beside one that is proved much better. False: none.
+  bool drop_copies();
   std::vector<Complex> known_roots() const;
   /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic,
   /// with all that is known out of the way. True: something new.
