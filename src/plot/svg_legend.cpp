@@ -146,8 +146,9 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
   const std::size_t columns = columns_of(entries, width);
   const double each = b.w / static_cast<double>(columns), first = b.y + pad + row / 2 - 2;
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::size_t line = i / columns;
     const Box column{b.x + each * static_cast<double>(i % columns), b.y, each, b.h};
-    draw_entry(c, entries[i], column, first + row * static_cast<double>(i / columns));
+    draw_entry(c, entries[i], column, first + row * static_cast<double>(line));
   }
   c.add("</g>\n");
 }
