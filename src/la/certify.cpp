@@ -43,18 +43,19 @@ void ModeSolver::Impl::drop_unproved() {
 
 bool ModeSolver::Impl::drop_copies() {
   constexpr double close = 1e-4, weak = 1e-10, much = 100.0;
-  const std::vector<Pair>& all = known;
-  std::vector<Complex> copies;
-  for (const Pair& p : all)
-    if (!p.rigid && p.residual > weak && std::any_of(all.begin(), all.end(), [&](const Pair& q) {
-          return q.residual * much < p.residual &&
-                 std::abs(q.lambda - p.lambda) < close * std::abs(p.lambda);
-        }))
-      copies.push_back(p.lambda);
-  std::erase_if(known, [&](const Pair& p) {
-    return std::find(copies.begin(), copies.end(), p.lambda) != copies.end();
-  });
-  return !copies.empty();
+  const auto is_copy = [&](const Pair& p) {
+    return !p.rigid && p.residual > weak &&
+           std::any_of(known.begin(), known.end(), [&](const Pair& q) {
+             return much * q.residual < p.residual &&
+                    std::abs(q.lambda - p.lambda) < close * std::abs(p.lambda);
+           });
+  };
+  std::vector<Pair> kept;
+  for (const Pair& p : known)
+    if (!is_copy(p)) kept.push_back(p);
+  const bool any = kept.size() < known.size();
+  known = std::move(kept);
+  return any;
 }
 
 std::vector<Complex> ModeSolver::Impl::known_roots() const {

@@ -253,8 +253,9 @@ std::string ModalRun::doubt() const {
 
 std::string ModalRun::line() const {
   const std::size_t asked = static_cast<std::size_t>(law_.modes);
+  const bool cut = !certificate_.by_frequency && certificate_.cut();
   const std::string of_those =
-      modes_.size() < asked ? fmt::format(" of the {} asked for", asked) : "";
+      cut && modes_.size() < asked ? fmt::format(" of the {} asked for", asked) : "";
   std::string line =
       fmt::format("{} modes{} at {:.0f} rpm", modes_.size(), of_those, to_rpm(law_.speed));
   for (std::size_t k = 0; k < std::min<std::size_t>(modes_.size(), 4); ++k)
@@ -265,8 +266,7 @@ std::string ModalRun::line() const {
           ? fmt::format(", complete but for {} slower than {:.2g} Hz, which rounding hides",
                         list.taken_for_zero, to_hz(list.zeros_within))
           : ", complete";
-  if (!certificate_.by_frequency && certificate_.cut())
-    complete += fmt::format(" as to what decays no faster than {:.3g} 1/s", list.reach);
+  if (cut) complete += fmt::format(" as to what decays no faster than {:.3g} 1/s", list.reach);
   return line +
          (modes_.empty()      ? ""
           : modes_.size() > 4 ? " ... Hz"

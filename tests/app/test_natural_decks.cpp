@@ -1060,6 +1060,107 @@ max_speed="3000 rpm"
   EXPECT_NEAR(t.rows.front()[t.column("speed [rpm]")], 2035.4, 0.5);
 }
 
+// Two tilts of rigid pedestals that nothing damps, at 5033 Hz: their rounding counted as growth, and a
+// list of eight modes went on to them.
+TEST(NaturalDecks, ANeutralModeFarBeyondTheListIsNotInIt) {
+  const DeckRun d(R"(format=1
+[output]
+report=false
+[model]
+gravity="9.81 m/s^2"
+[[shaft]]
+name="rotor"
+material="steel"
+columns=["name","length[mm]","od[mm]","min_elements"]
+rows=[["a",600,100,4],["b",600,110,4]]
+[[disk]]
+name="D"
+at="rotor/a:end"
+mass="150 kg"
+Ip="4 kg.m^2"
+Id="2.5 kg.m^2"
+[[bearing]]
+name="thrust"
+at="rotor/a:start"
+type="linear"
+kxx="1e8 N/m"
+cxx="1e4 N.s/m"
+krxx="0 N.m/rad"
+[[shaft]]
+name="cDE"
+origin=["-5 mm","0 mm","0 mm"]
+rotating=false
+[[shaft.section]]
+name="c"
+length="10 mm"
+rigid=true
+[[disk]]
+name="MDE"
+at="cDE/c:mid"
+mass="40 kg"
+Ip="1 kg.m^2"
+Id="1 kg.m^2"
+[[bearing]]
+name="gDE"
+at="cDE/c:mid"
+type="linear"
+kyy="3e+08 N/m"
+kzz="4e+08 N/m"
+cyy="20000 N.s/m"
+czz="20000 N.s/m"
+kxx="1e9 N/m"
+krr="1e9 N.m/rad"
+krxx="1e9 N.m/rad"
+[[shaft]]
+name="cNDE"
+origin=["1195 mm","0 mm","0 mm"]
+rotating=false
+[[shaft.section]]
+name="c"
+length="10 mm"
+rigid=true
+[[disk]]
+name="MNDE"
+at="cNDE/c:mid"
+mass="60 kg"
+Ip="1 kg.m^2"
+Id="1 kg.m^2"
+[[bearing]]
+name="gNDE"
+at="cNDE/c:mid"
+type="linear"
+kyy="2e+08 N/m"
+kzz="5e+08 N/m"
+cyy="30000 N.s/m"
+czz="30000 N.s/m"
+kxx="1e9 N/m"
+krr="1e9 N.m/rad"
+krxx="1e9 N.m/rad"
+[[bearing]]
+name="DE"
+at="rotor/a:start"
+type="floating_ring"
+inner={diameter="60 mm",length="40 mm",clearance="50 um",viscosity="10 mPa.s"}
+outer={diameter="80 mm",length="50 mm",clearance="80 um",viscosity="12 mPa.s"}
+to="cDE/c:mid"
+[[bearing]]
+name="NDE"
+at="rotor/b:end"
+type="floating_ring"
+inner={diameter="60 mm",length="40 mm",clearance="50 um",viscosity="10 mPa.s"}
+outer={diameter="80 mm",length="50 mm",clearance="80 um",viscosity="12 mPa.s"}
+to="cNDE/c:mid"
+[[step]]
+name="m"
+type="modal"
+speed="5000 rpm"
+modes=8
+motion="lateral"
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_EQ(d.csv("m_modes.csv").rows.size(), 8u) << d.log;
+}
+
 // Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
 // from zero so fast that its divergence was taken for growth that has no onset, and called stable.
 TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {

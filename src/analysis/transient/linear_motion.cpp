@@ -57,15 +57,15 @@ double difference_of_masses(const system::System& system, const la::BlockMatrix<
           coupling = std::max(coupling, std::abs(d(a, b)));
     const double size = std::sqrt(mass[line] * rotary[line]);
     if (coupling > 0.0 && size > 0.0) worst = std::max(worst, coupling / size);
-    // m e^2, with room for the angle it is seen at
     const double m = diagonal.segment<3>(6 * i).maxCoeff();
-    const double of_tilt = m > 0.0 ? 4.0 * coupling * coupling / m : 0.0;
-    if (of_tilt > 0.0) worst = std::max(worst, of_tilt / (4.0 * rotary[line]));
+    const double tilt = m > 0.0 ? coupling * coupling / m : 0.0;  // m e^2
+    if (tilt > 0.0) worst = std::max(worst, tilt / rotary[line]);
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 6; ++b) {
         if (turns(a) != turns(b)) continue;
-        const double left = std::max(0.0, std::abs(d(a, b)) - (turns(a) ? of_tilt : 0.0));
-        rest.block(s)(a, b) += left;
+        constexpr double seen = 4.0;  // at the angles looked at
+        const double of_unbalance = turns(a) ? seen * tilt : 0.0;
+        rest.block(s)(a, b) += std::max(0.0, std::abs(d(a, b)) - of_unbalance);
       }
   }
   for (Index i = 0; i < p.size(); ++i)
