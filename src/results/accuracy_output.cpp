@@ -255,8 +255,8 @@ void AccuracyOutput::judge_damping(TransientEnd& end, const std::vector<Containe
       !std::isfinite(analysis::numerical_decay(scheme.method, scheme.rho_inf, Complex(0, 1), 1e-3));
   if (unknown) return;
   io::Table t;
-  t.title = fmt::format("Damping of the modes at {:.0f} rpm: physical, and what the steps add",
-                        to_rpm(speed));
+  const long rpm = std::lround(to_rpm(speed));  // a rotor that has stopped: no "-0"
+  t.title = fmt::format("Damping of the modes at {} rpm: physical, and what the steps add", rpm);
   t.columns = {
       {"frequency", "Hz", ""},
       {"motion", "-", ""},
