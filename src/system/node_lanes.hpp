@@ -8,7 +8,8 @@ namespace whirl::system::lanes {
 
 /// Arrays over the nodes; distances in doubles.
 struct Motion {
-  std::ptrdiff_t count = 0;
+  std::ptrdiff_t count = 0;                               ///< of the nodes to be evaluated
+  const std::ptrdiff_t* nodes = nullptr;                  ///< which they are; null: all
   const double *q = nullptr, *v = nullptr, *a = nullptr;  ///< 6 a node: u, phi, gamma2, gamma3
   const int* line = nullptr;                              ///< per node
   const int* axes = nullptr;                              ///< per node: number of its chart

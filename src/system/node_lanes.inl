@@ -52,7 +52,8 @@ struct Group {
 WHIRL_INLINE Group group_of(const Motion& m, std::ptrdiff_t first, int used) {
   Group g;
   for (int i = 0; i < width; ++i) {
-    const std::ptrdiff_t k = first + (i < used ? i : used - 1);
+    const std::ptrdiff_t place = first + (i < used ? i : used - 1);
+    const std::ptrdiff_t k = m.nodes ? m.nodes[place] : place;
     g.q[i] = m.q + 6 * k;
     g.v[i] = m.v + 6 * k;
     g.a[i] = m.a + 6 * k;
@@ -99,7 +100,7 @@ WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first
   const Mask inside = x < m.limit_squared;  // false for NaN too
   if (!every(inside))
     for (int i = 0; i < used; ++i)
-      if (!inside[i]) return first + i;
+      if (!inside[i]) return m.nodes ? m.nodes[first + i] : first + i;
   const Ratios<T> b = ratios_of(x);
   const Place<T> o = place_of(q.g2, q.g3, x, b);
   T D_rate[3][2], rate[3], accel[3];

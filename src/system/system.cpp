@@ -182,6 +182,7 @@ System Builder::finalize() {
   s.linear_ = is_linear();
   for (std::size_t i = 0; i < s.terms_.size(); ++i)
     if (s.terms_[i]->cornered()) s.cornered_.push_back(i);
+  s.list_exchanging();
   return std::move(system_);
 }
 
@@ -333,7 +334,8 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 }
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
-                            Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+                            Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a,
+                            std::span<const Index> only) const {
   WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
   WHIRL_EXPECTS(w.nodes.size() == at(nodes()) && f.of_node.size() == at(nodes()));
   static_assert(sizeof(Mat32) == 6 * sizeof(double));
@@ -342,7 +344,8 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   WHIRL_EXPECTS(f.kept.size() == kept_.size());
   if (!kept_.empty()) std::copy(f.kept.begin(), f.kept.end(), w.kept.begin());
   lanes::Motion m;
-  m.count = nodes();
+  m.count = only.empty() ? nodes() : static_cast<Index>(only.size());
+  if (!only.empty()) m.nodes = only.data();
   if (followers_.empty()) {
     m.q = q.data();
     m.v = v.data();
@@ -382,6 +385,18 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
     evaluate_own_axes(w);
   }
   return w.outside < 0;
+}
+
+void System::list_exchanging() {
+  exchanging_.clear();
+  const bool carried = !followers_.empty();
+  const bool all_weights = base_[0] || base_[1] || base_[2];  // field_power
+  if (carried || all_weights) return;
+  for (const auto& term : terms_)
+    if (!term->powerless()) term->list_nodes(exchanging_);
+  std::sort(exchanging_.begin(), exchanging_.end());
+  exchanging_.erase(std::unique(exchanging_.begin(), exchanging_.end()), exchanging_.end());
+  if (2 * exchanging_.size() > at(nodes())) exchanging_.clear();
 }
 
 void System::evaluate_own_axes(Workspace& w) const {

@@ -136,7 +136,19 @@ class System {
   /// @pre q, v, a of length size() (as in all that follow), w of make_workspace(), f of a state of
   /// this system; f must live while w is read.
   bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
-                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
+                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+    return evaluate_nodes(w, f, t, q, v, a, {});
+  }
+  /// Nodes of terms that supply or dissipate, ascending: all that exchange() reads. Empty where that
+  /// are nearly all, or where those that joints carry along need the others.
+  std::span<const Index> exchanging_nodes() const { return exchanging_; }
+  /// Those alone; the states of all others are then unknown.
+  /// @pre exchanging_nodes() is not empty, f is not moved.
+  bool evaluate_exchanging(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                           Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+    WHIRL_EXPECTS(!exchanging_.empty() && !f.moved());
+    return evaluate_nodes(w, f, t, q, v, a, exchanging_);
+  }
   /// Some of the terms, as numbers into terms(); a null pointer means all.
   using Selection = const std::vector<std::size_t>*;
   /// r = R(t, q, v, a); held entries hold the reactions (force and torque the support exerts on the
@@ -168,6 +180,11 @@ class System {
 
  private:
   friend class Builder;
+  /// only: empty means all.
+  bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a,
+                      std::span<const Index> only) const;
+  void list_exchanging();
   void evaluate_own_axes(Workspace& w) const;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   /// What is left of the forces after joints have carried them, and the loads of joints.
@@ -193,6 +210,7 @@ class System {
   std::vector<std::unique_ptr<Term>> terms_;
   std::unordered_map<std::type_index, std::size_t> by_type_;
   std::vector<std::size_t> cornered_;
+  std::vector<Index> exchanging_;
   std::vector<Keeper> keepers_;
   std::vector<double> kept_;  ///< at first
   bool linear_ = false;

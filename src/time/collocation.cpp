@@ -397,8 +397,9 @@ void Collocation::rewind() {
 
 void Collocation::drop_history() { have_history_ = have_start_residual_ = false; }
 
-template <int S>
-void Collocation::dense_of(double theta, Ref q, Ref v, Ref a) const {
+template <int S, class Entry>
+void Collocation::dense_of(double theta, Index count, const Entry& entry, Ref q, Ref v,
+                           Ref a) const {
   WHIRL_EXPECTS(s_ == S);
   const Tableau::Basis b = tab_.basis(theta);
   double on_q[S], on_v[S], on_a[S];
@@ -410,7 +411,8 @@ void Collocation::dense_of(double theta, Ref q, Ref v, Ref a) const {
   }
   const double along = theta * h_;
   // one pass: the vectors are read once
-  for (Index i = 0; i < n_; ++i) {
+  for (Index k = 0; k < count; ++k) {
+    const Index i = entry(k);
     double q_i = q0_[i] + along * v0_[i], v_i = v0_[i], a_i = 0.0;
     for (int j = 0; j < S; ++j) {
       const double stage = a_last_(i, j);
@@ -424,13 +426,27 @@ void Collocation::dense_of(double theta, Ref q, Ref v, Ref a) const {
   }
 }
 
-void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
+template <class Entry>
+void Collocation::dense_at(double theta, Index count, const Entry& entry, Ref q, Ref v,
+                           Ref a) const {
   WHIRL_EXPECTS(h_ > 0.0);
   switch (s_) {
-    case 1: return dense_of<1>(theta, q, v, a);
-    case 2: return dense_of<2>(theta, q, v, a);
-    default: return dense_of<3>(theta, q, v, a);
+    case 1: return dense_of<1>(theta, count, entry, q, v, a);
+    case 2: return dense_of<2>(theta, count, entry, q, v, a);
+    default: return dense_of<3>(theta, count, entry, q, v, a);
   }
+}
+
+void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
+  dense_at(
+      theta, n_, [](Index k) { return k; }, q, v, a);
+}
+
+bool Collocation::dense_some(double theta, std::span<const Index> entries, Ref q, Ref v,
+                             Ref a) const {
+  const auto entry = [entries](Index k) { return entries[static_cast<std::size_t>(k)]; };
+  dense_at(theta, static_cast<Index>(entries.size()), entry, q, v, a);
+  return true;
 }
 
 bool Collocation::dense_entries(double theta, std::span<const Index> entries, Ref q) const {

@@ -23,8 +23,12 @@ class Collocation final : public Stepper {
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;
-  template <int S>
-  void dense_of(double theta, Ref q, Ref v, Ref a) const;
+  /// Of count entries, the k-th is entry(k).
+  template <int S, class Entry>
+  void dense_of(double theta, Index count, const Entry& entry, Ref q, Ref v, Ref a) const;
+  template <class Entry>
+  void dense_at(double theta, Index count, const Entry& entry, Ref q, Ref v, Ref a) const;
+  bool dense_some(double theta, std::span<const Index> entries, Ref q, Ref v, Ref a) const override;
   bool dense_entries(double theta, std::span<const Index> entries, Ref q) const override;
   void dense(double theta, Ref q, Ref v, Ref a) const override;
   void save_history(std::vector<double>& out) const override;

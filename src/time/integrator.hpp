@@ -158,6 +158,18 @@ class Integrator {
     (void)q;
     return false;
   }
+  /// State at t inside the last step, of these entries alone and of those that are held, the others
+  /// left as they are; false, and nothing written, as above.
+  /// @pre vectors of length Problem::size().
+  virtual bool interpolate_some(double t, std::span<const Index> entries, Ref q, Ref v,
+                                Ref a) const {
+    (void)t;
+    (void)entries;
+    (void)q;
+    (void)v;
+    (void)a;
+    return false;
+  }
   /// Work the residual does along the interpolant of the last step, integral of v . R dt over the
   /// unknowns, N m, right to rounding: what is missing in the balance of energy of an AffineProblem.
   /// Nothing for other problems, and where the scheme has no cheap way to say.

@@ -452,6 +452,15 @@ bool Stepper::interpolate_entries(double t, std::span<const Index> entries, Ref 
   return dense_entries(((t - t0_) - t0_low_) / h_, entries, q);
 }
 
+bool Stepper::interpolate_some(double t, std::span<const Index> entries, Ref q, Ref v,
+                               Ref a) const {
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_ && a.size() == n_);
+  if (!have_step_ || t == t_ || t == t0_) return false;
+  if (!dense_some(((t - t0_) - t0_low_) / h_, entries, q, v, a)) return false;
+  problem_.impose(t, q, v, a);
+  return true;
+}
+
 void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
                               VecX& low) {
   WHIRL_EXPECTS(dx.size() == x.size() && x_low.size() == x.size());

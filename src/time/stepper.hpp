@@ -23,6 +23,7 @@ class Stepper : public Integrator {
   double proposed_step() const final { return h_next_; }
   void interpolate(double t, Ref q, Ref v, Ref a) const final;
   bool interpolate_entries(double t, std::span<const Index> entries, Ref q) const final;
+  bool interpolate_some(double t, std::span<const Index> entries, Ref q, Ref v, Ref a) const final;
   void refresh() final {
     linearize_ = true;
     h_factored_ = 0.0;
@@ -57,6 +58,15 @@ class Stepper : public Integrator {
     (void)theta;
     (void)entries;
     (void)q;
+    return false;
+  }
+  /// Of some entries; false where dense() is as cheap.
+  virtual bool dense_some(double theta, std::span<const Index> entries, Ref q, Ref v, Ref a) const {
+    (void)theta;
+    (void)entries;
+    (void)q;
+    (void)v;
+    (void)a;
     return false;
   }
   virtual void save_history(std::vector<double>& out) const = 0;

@@ -341,9 +341,9 @@ void EnergyBalance::step_by_residual(StepAccess& s, double work) {
   const double h = s.t1() - s.t0();
   double lost = 0.0;
   for (int k = 0; k < 2; ++k)
-    lost += h * b[k] * s.at(s.t0() + c[k] * h).dissipation();
+    lost += h * b[k] * s.dissipation(s.t0() + c[k] * h);
   if (jumps_at(s.t1())) {
-    lost += h * b[2] * s.at(std::nextafter(s.t1(), -infinity)).dissipation();
+    lost += h * b[2] * s.dissipation(std::nextafter(s.t1(), -infinity));
   } else {
     lost += h * b[2] * s.end().energy().dissipated;
   }
@@ -361,7 +361,7 @@ void EnergyBalance::step(StepAccess& s) {
   const auto& [c, b] = radau_points();
   const double h = s.t1() - s.t0();
   for (int k = 0; k < 2; ++k) {
-    const auto p = s.at(s.t0() + c[k] * h).exchange();
+    const auto p = s.exchange(s.t0() + c[k] * h);
     supplied_ += h * b[k] * p.supplied;
     dissipated_ += h * b[k] * p.dissipated;
   }

@@ -29,6 +29,11 @@ class StepAccess {
   virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     lateral(at(t), points, out);
   }
+  /// Power supplied and dissipated at t, as at(t).exchange() says, and cheaper where few elements do
+  /// either. What at() gave before is no longer good.
+  virtual time::Problem::Power exchange(double t) { return at(t).exchange(); }
+  /// Power dissipated at t, W, in the same way.
+  virtual double dissipation(double t) { return at(t).dissipation(); }
   /// time::Integrator::residual_work of the step.
   virtual std::optional<double> residual_work() { return std::nullopt; }
 

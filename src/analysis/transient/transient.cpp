@@ -40,7 +40,8 @@ class StepDense final : public StepAccess {
  public:
   /// look: called before every evaluation; throws to stop.
   StepDense(system::SystemProblem& p, time::Integrator& i, std::function<void()> look)
-      : integrator_(i),
+      : problem_(p),
+        integrator_(i),
         look_(std::move(look)),
         snapshot_(p),
         q_(p.size()),
@@ -49,6 +50,9 @@ class StepDense final : public StepAccess {
         fixed_(at_(p.size()), 0) {
     for (const system::Hold& h : p.system().holds())
       if (!h.law) fixed_[at_(h.unknown)] = 1;
+    for (const Index node : p.system().exchanging_nodes())
+      for (Index c = 0; c < 6; ++c)
+        exchanging_.push_back(6 * node + c);
   }
   void set(double t0, double t1) {
     t0_ = t0;
@@ -73,6 +77,14 @@ class StepDense final : public StepAccess {
     }
     return snapshot_;
   }
+  time::Problem::Power exchange(double t) override {
+    if (problem_.power_needs_reactions() || !exchanging_alone(t)) return at(t).exchange();
+    return problem_.exchange_here(v_, a_);  // which reads no reactions
+  }
+  double dissipation(double t) override {
+    if (!exchanging_alone(t)) return at(t).dissipation();
+    return problem_.system().exchange(problem_.workspace()).dissipated;
+  }
   std::optional<double> residual_work() override {
     return t1_ > t0_ ? integrator_.residual_work() : std::nullopt;
   }
@@ -82,6 +94,18 @@ class StepDense final : public StepAccess {
 
  private:
   static std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
+
+  /// Evaluates the nodes that supply or dissipate power at t, and no others; false where that is not
+  /// enough.
+  bool exchanging_alone(double t) {
+    if (exchanging_.empty() || t >= t1_ || snapshot_.frames().moved()) return false;
+    look_();
+    if (!integrator_.interpolate_some(t, exchanging_, q_, v_, a_)) return false;
+    at_end_ = false;
+    inside_ = nan;
+    return problem_.system().evaluate_exchanging(problem_.workspace(), problem_.frames, t, q_, v_,
+                                                 a_);
+  }
 
   /// The unknowns of these points alone; false where that is not enough.
   bool alone(double t, std::span<const Point> points, std::vector<Vec2>& out) {
@@ -124,12 +148,14 @@ class StepDense final : public StepAccess {
     }
   }
 
+  system::SystemProblem& problem_;
   time::Integrator& integrator_;
   std::function<void()> look_;
   Snapshot snapshot_;
   VecX q_, v_, a_, values_;
   std::vector<unsigned char> fixed_;  ///< unknowns held at zero
   std::vector<Index> entries_;
+  std::vector<Index> exchanging_;  ///< unknowns of System::exchanging_nodes
   double t0_ = 0, t1_ = 0;
   bool at_end_ = false;  ///< the snapshot is the step's end ..
   double inside_ = nan;  ///< .. or this instant of the step
