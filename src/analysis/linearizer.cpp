@@ -73,6 +73,7 @@ void Linearizer::take_undeformed(double Omega) {
   relax_axially();
   system().follow(s);
   equilibrium_.reactions = VecX::Zero(system().size());
+  solver_.list_holds(s, equilibrium_);
   have_ = true;
   current_ = have_forcing_ = false;
   balanced_load_ = running_.load();

@@ -45,8 +45,13 @@ std::vector<double> speeds_of(const model::SpeedRange& r) {
   if (!r.values.empty()) return r.values;
   std::vector<double> out;
   out.reserve(static_cast<std::size_t>(std::max(r.points, 0)));
-  for (int k = 0; k < r.points; ++k)
-    out.push_back(r.points == 1 ? r.stop : r.start + (r.stop - r.start) * k / (r.points - 1));
+  // the end is met, and standing still within a range is no rounding beside it
+  const double rounding = 1e-12 * std::max(std::abs(r.start), std::abs(r.stop));
+  const int last = r.points - 1;
+  for (int k = 0; k < r.points; ++k) {
+    const double x = k == last ? r.stop : r.start + (r.stop - r.start) * k / last;
+    out.push_back(std::abs(x) < rounding ? 0.0 : x);
+  }
   return out;
 }
 

@@ -55,6 +55,29 @@ double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, co
   }
   return size;
 }
+
+/// The inertia of a rotor that is free to turn drowns in the rounding of its torsional stiffness.
+bool too_slow(const system::System& s, const la::MCK& m, double w, Index spin) {
+  constexpr double least = 1e-8;
+  const Index line = s.node(spin / 6).line;
+  const auto own = [&](const la::BlockMatrix<6>& x, Index node) {
+    return std::abs(x.block(s.pattern().slot(node, node))(system::spin_phi, system::spin_phi));
+  };
+  double inertia = 0.0;
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (s.node(i).line == line && s.pattern().diagonal(i) >= 0) inertia += own(m.M, i);
+  return w * w * inertia < least * own(m.K, spin / 6);
+}
+
+double extent_of(const system::System& s) {
+  Vec3 low = Vec3::Constant(infinity), high = -low;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (s.node(i).scalar) continue;
+    low = low.cwiseMin(s.node(i).position);
+    high = high.cwiseMax(s.node(i).position);
+  }
+  return (high - low).cwiseMax(0.0).norm();
+}
 }  // namespace
 
 HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
@@ -68,14 +91,18 @@ bool HarmonicSolver::prepare(double Omega, double w) {
   matrices_ = &m;
   w_ = w;
   spin_free_ = false;
-  if (w != 0.0 &&
+  const auto& spin_holds = linear_.equilibrium().spin_holds;
+  const bool slow = std::any_of(spin_holds.begin(), spin_holds.end(), [&](Index k) {
+    return motion_.takes_part(k) && too_slow(linear_.system(), m, w, k);
+  });
+  if (w != 0.0 && !slow &&
       solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
     return true;
   std::vector<Index> first, last, axial;
   // A line that is free along its axis is never pushed along it (E32): at w = 0 it may stand anywhere.
   for (const Index k : linear_.equilibrium().axial_holds)
     if (w == 0.0 && motion_.takes_part(k)) axial.push_back(k);
-  for (const Index k : linear_.equilibrium().spin_holds) {
+  for (const Index k : spin_holds) {
     if (!motion_.takes_part(k)) continue;
     first.push_back(k);
     last.push_back(last_of_line(linear_.system(), motion_.active(), k));
@@ -83,8 +110,8 @@ bool HarmonicSolver::prepare(double Omega, double w) {
   if (first.empty() && axial.empty())
     return w == 0.0 &&
            solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
-  spin_free_ =
-      hold(m, w, std::move(first), axial, first_) && hold(m, w, std::move(last), axial, last_);
+  spin_free_ = hold(m, w, std::move(first), axial, first_) &&
+               (w != 0.0 || hold(m, w, std::move(last), axial, last_));
   return spin_free_;
 }
 
@@ -153,12 +180,16 @@ void HarmonicSolver::solve_held(VecXc& x) {
   const VecXc rest =
       f - multiply(x);  // what the holds must exert: the torques that drive the rotors round
   if (w_ != 0.0) {
+    VecXc driving = VecXc::Zero(rest.size());
+    for (const Index k : first_.at)
+      if (std::abs(rest[k]) > 1e-12 * torque_size(linear_.system(), *matrices_, x, f, k))
+        driving[k] = rest[k];
     // Their inertia and damping take the torque up: turning by c, then what that does to the twist.
     const MatX spins = free_spins();
     const VecXc c = la::pivoted_solution(spin_matrix(spins, matrices_->M, matrices_->C),
-                                         spins.transpose().cast<Complex>() * rest);
+                                         spins.transpose().cast<Complex>() * driving);
     VecXc turned = spins.cast<Complex>() * c;
-    VecXc left = rest - inertia_and_damping(turned);
+    VecXc left = driving - inertia_and_damping(turned);
     for (const Index k : first_.at)
       left[k] = 0;
     first_.solver->solve(left);
@@ -213,6 +244,10 @@ MatXc HarmonicSolver::spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M
 MatX HarmonicSolver::free_spins() const {
   const Index unknowns = linear_.system().size(), n = static_cast<Index>(first_.at.size());
   MatX spins(unknowns, n);
+  // Nothing but rounding moves a journal where its shaft turns, and its damping would be taken for one
+  // of the spin.
+  constexpr double rounding = 1e-10;
+  const double length = extent_of(linear_.system());
   for (Index j = 0; j < n; ++j) {
     VecX e = VecX::Zero(unknowns), pull = e;
     e[first_.at[at(j)]] = 1.0;
@@ -222,6 +257,8 @@ MatX HarmonicSolver::free_spins() const {
     VecXc follow = pull.cast<Complex>();
     first_.solver->solve(follow);
     spins.col(j) = follow.real() + e;
+    for (Index k = 0; k < unknowns; ++k)
+      if (std::abs(spins(k, j)) < rounding * (k % 6 < 3 ? length : 1.0)) spins(k, j) = 0.0;
   }
   return spins;
 }

@@ -488,6 +488,17 @@ bool has_fresh_scalars(const system::System& s, const VecX& q) {
 
 }  // namespace
 
+void EquilibriumSolver::find_holds_once(const system::State& s, double Omega) {
+  if (!holds_known_) find_spin_holds(s, Omega);
+  holds_known_ = true;
+}
+
+void EquilibriumSolver::list_holds(const system::State& state, Equilibrium& e) {
+  find_holds_once(state, e.Omega);
+  e.spin_holds = spin_holds_;
+  e.axial_holds = axial_holds_;
+}
+
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
   const system::System& sys = running_.system();
   Equilibrium out;
@@ -498,10 +509,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
   s.a.setZero();
-  if (!holds_known_) {
-    find_spin_holds(s, Omega);
-    holds_known_ = true;
-  }
+  find_holds_once(s, Omega);
   for (Index k : spin_holds_)
     s.q[k] = 0.0;
   if (has_fresh_scalars(sys, s.q)) running_.relax(s.frames, Omega, s.q);

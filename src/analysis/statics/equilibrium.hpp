@@ -61,6 +61,9 @@ class EquilibriumSolver {
   SteadySystem& running() { return running_; }
   std::span<const unsigned char> free() const { return free_; }
   const std::vector<Index>& spin_holds() const { return spin_holds_; }
+  /// Looks at `state` for what is held because nothing else does, and puts it into e: for a state that
+  /// needs no balance.
+  void list_holds(const system::State& state, Equilibrium& e);
   const la::MCK& matrices() const { return matrices_; }
   /// Size of the model, m: what displacements are compared with.
   double length() const { return length_; }
@@ -73,6 +76,7 @@ class EquilibriumSolver {
   struct SpinMotions;
   void find_axial_holds();
   void find_spin_holds(const system::State& s, double Omega);
+  void find_holds_once(const system::State& s, double Omega);
   /// @pre matrices_ are those of the state.
   SpinMotions spin_motions() const;
   /// The unknown phi to hold of a group of lines that nothing resists or holds, else -1.
