@@ -3,6 +3,7 @@
 #include <convert/convert.hpp>
 #include <convert/deck_values.hpp>
 #include <convert/notes.hpp>
+#include <deck/materials.hpp>
 #include <core/table.hpp>
 #include <core/units.hpp>
 #include <algorithm>
@@ -280,7 +281,7 @@ class StationDeck {
     root.add("title", Value::of_text(fmt::format("Converted from {}", notes_.file())));
     Value shafts = Value::make_array();
     shafts.items.push_back(shaft());
-    root.add("material", materials());
+    if (Value list = materials(); !list.items.empty()) root.add("material", std::move(list));
     root.add("shaft", std::move(shafts));
     if (!disks_.items.empty()) root.add("disk", std::move(disks_));
     Value bearings = Value::make_array();
@@ -330,12 +331,14 @@ class StationDeck {
     const Column *E = find(columns_, "E"), *G = find(columns_, "G"),
                  *rho = find(columns_, "density");
     const Column* word = find(columns_, "material");
-    if (!E || !rho) {
-      notes_.say(
-          "without columns of E and density the shaft is of steel: E 210 GPa, density 7850 "
-          "kg/m^3, Poisson's ratio 0.3");
-      return "steel";
-    }
+    if (E == nullptr && rho == nullptr) return named_material(word, row);
+    if (E == nullptr || rho == nullptr)
+      notes_.refuse(fmt::format("there is a column of {} and none of {}", E ? "E" : "density",
+                                E ? "density" : "E"),
+                    "titles like 'E [GPa]' and 'Density [kg/m3]', or a column of materials");
+    for (const auto& [column, what] : {std::pair(E, "E"), std::pair(rho, "density")})
+      if (!column->values[row])
+        notes_.refuse(fmt::format("a station without {}", what), {}, {}, line(row));
     const std::array<double, 3> now{at(E, row, 0), at(G, row, at(E, row, 0) / 2.6),
                                     at(rho, row, 0)};
     if (!G) notes_.say("without a column of G it is E / 2.6");
@@ -346,6 +349,26 @@ class StationDeck {
                                                       ? word->texts[row]
                                                       : fmt::format("material {}", given_.size())));
     return given_names_.back();
+  }
+
+  /// By its word alone: one of those that every deck knows, or steel where there is none.
+  std::string named_material(const Column* word, std::size_t row) {
+    if (word == nullptr || word->texts[row].empty()) {
+      notes_.say(
+          "without columns of E and density the shaft is of steel: E 210 GPa, density 7850 "
+          "kg/m^3, Poisson's ratio 0.3");
+      assumed_steel_ = true;
+      return assumed_name;
+    }
+    std::string known;
+    for (const auto& m : deck::builtin_materials()) {
+      known += (known.empty() ? "" : ", ") + m.name;
+      if (letters(m.name) == letters(word->texts[row])) return m.name;
+    }
+    notes_.refuse(
+        fmt::format("of the material '{}' there are neither E nor density", word->texts[row]),
+        fmt::format("give columns like 'E [GPa]' and 'Density [kg/m3]', or one of {}", known), {},
+        line(row));
   }
 
   Value materials() const {
@@ -360,7 +383,7 @@ class StationDeck {
     };
     for (std::size_t k = 0; k < given_.size(); ++k)
       one(given_names_[k], given_[k][0], given_[k][1], given_[k][2]);
-    if (given_.empty()) one("steel", 210e9, 210e9 / 2.6, 7850);
+    if (assumed_steel_) one(assumed_name, 210e9, 210e9 / 2.6, 7850);
     return list;
   }
 
@@ -371,8 +394,9 @@ class StationDeck {
       title(t);
     const Column *stiff_od = find(columns_, "stiffness_od"),
                  *stiff_id = find(columns_, "stiffness_id");
-    if (stiff_od) title("stiffness_od[mm]");
-    if (stiff_od) title("stiffness_id[mm]");
+    const bool stiffness = stiff_od || stiff_id;
+    if (stiffness) title("stiffness_od[mm]");
+    if (stiffness) title("stiffness_id[mm]");
     title("material");
     const Column *length = find(columns_, "length"), *od_l = find(columns_, "od_l"),
                  *id_l = find(columns_, "id_l"), *od_r = find(columns_, "od_r"),
@@ -396,8 +420,8 @@ class StationDeck {
       const double od = *od_l->values[k], id = at(id_l, k, 0);
       for (const double x : {L, od, id, at(od_r, k, od), at(id_r, k, id)})
         row.items.push_back(cell(x, "mm"));
-      if (stiff_od) row.items.push_back(cell(at(stiff_od, k, od), "mm"));
-      if (stiff_od) row.items.push_back(cell(at(stiff_id, k, id), "mm"));
+      if (stiffness) row.items.push_back(cell(at(stiff_od, k, od), "mm"));
+      if (stiffness) row.items.push_back(cell(at(stiff_id, k, id), "mm"));
       row.items.push_back(Value::of_text(material_of(k)));
       rows.items.push_back(std::move(row));
       disk(k, name + ":start");
@@ -450,6 +474,8 @@ class StationDeck {
   const CellTable& cells_;
   Notes& notes_;
   std::vector<Column> columns_;
+  static constexpr const char* assumed_name = "steel";
+  bool assumed_steel_ = false;
   std::vector<std::array<double, 3>> given_;
   std::vector<std::string> given_names_;
   Names material_names_, section_names_;

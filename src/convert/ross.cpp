@@ -130,6 +130,7 @@ class RossDeck {
     root.add("shaft", std::move(shafts));
     add(root, "disk", disks());
     add(root, "bearing", bearings());
+    say_what_stands_apart();
     add(root, "step", steps());
     std::string head = comment(fmt::format(
         "Converted from '{}'{}. ROSS's axes x, y (across) and z (along the shaft) are y, z and x "
@@ -420,28 +421,84 @@ class RossDeck {
     t.add("rows", std::move(rows));
   }
 
-  /// A bearing to a node off the shaft: that node's mass and its own bearing to the ground.
+  /// A bearing to a node off the shaft: that node's mass and all that ties it to the ground.
   void pedestal(Value& t, const RossBearing& b) {
     if (on_shaft(b.n_link)) notes_.refuse("it connects two nodes of one shaft", {}, b.entity);
+    const auto stands_there = [&](const RossBearing& o) { return o.n_link == b.n_link; };
+    if (std::count_if(rotor_.bearings.begin(), rotor_.bearings.end(), stands_there) > 1)
+      notes_.refuse(
+          fmt::format("node {}, which it stands on, carries another element too", b.n_link),
+          "a pedestal carries one bearing: make one element of those to the same node of the "
+          "shaft; "
+          "of several bearings on one mass write a [[foundation]]",
+          b.entity);
+    const RossBearing ground = ties_to_ground(b);
     Value support = Value::make_table();
+    support.add("mass", quantity(mass_of_node(b.n_link) + isotropic_mass(ground), "kg"));
+    constant_entries(support, ground, false);
+    t.add("support", std::move(support));
+  }
+
+  double mass_of_node(long n) const {
     double mass = 0;
     for (const RossDisk& m : rotor_.masses)
-      if (m.n == b.n_link) mass += m.m;
-    support.add("mass", quantity(mass, "kg"));
-    const auto ground = std::find_if(rotor_.bearings.begin(), rotor_.bearings.end(),
-                                     [&](const RossBearing& g) { return g.n == b.n_link; });
-    if (ground == rotor_.bearings.end())
+      if (m.n == n) mass += m.m;
+    return mass;
+  }
+
+  /// What stands between the ground and the node of a pedestal, in sum.
+  RossBearing ties_to_ground(const RossBearing& b) {
+    std::optional<RossBearing> sum;
+    for (const RossBearing& g : rotor_.bearings) {
+      if (g.n != b.n_link) continue;
+      if (g.n_link >= 0)
+        notes_.refuse(fmt::format("node {} stands on another node in turn", b.n_link),
+                      "one mass between bearing and ground can be taken; more are a [[foundation]]",
+                      g.entity);
+      if (!g.speed.empty())
+        notes_.say("a support that depends on the speed is taken with its first row", {}, g.entity);
+      if (!sum) {
+        sum = g;
+        continue;
+      }
+      for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        for (std::size_t pair = 0; pair < pairs.size(); ++pair)
+          sum->entry[kind][pair].front() += g.entry[kind][pair].front();
+    }
+    if (!sum)
       notes_.refuse(fmt::format("nothing carries node {}, which it stands on", b.n_link), {},
                     b.entity);
-    if (ground->n_link >= 0)
-      notes_.refuse(fmt::format("node {} stands on another node in turn", b.n_link),
-                    "one mass between bearing and ground can be taken; more are a [[foundation]]",
-                    ground->entity);
-    if (!ground->speed.empty())
-      notes_.say("a support that depends on the speed is taken with its first row", {},
-                 ground->entity);
-    constant_entries(support, *ground, false);
-    t.add("support", std::move(support));
+    return *sum;
+  }
+
+  /// The mass that elements to the ground give to a pedestal, which is the same in all directions.
+  double isotropic_mass(const RossBearing& ground) {
+    const auto& m = ground.entry[2];
+    const double yy = m[0].front(), yz = m[1].front(), zy = m[2].front(), zz = m[3].front();
+    if (yz != 0 || zy != 0 || yy != zz)
+      notes_.say(
+          fmt::format("masses of {} kg, {} kg and cross terms at a pedestal become one of {} "
+                      "kg",
+                      yy, zz, 0.5 * (yy + zz)),
+          {}, ground.entity);
+    return 0.5 * (yy + zz);
+  }
+
+  /// Says what of the nodes off the shaft is no pedestal.
+  void say_what_stands_apart() {
+    const auto carries = [&](long n) {
+      return std::any_of(rotor_.bearings.begin(), rotor_.bearings.end(),
+                         [&](const RossBearing& b) { return b.n_link == n; });
+    };
+    const auto say = [&](long n, const std::string& entity) {
+      if (!on_shaft(n) && !carries(n))
+        notes_.say(fmt::format("it stands at node {}, which no bearing ties to the shaft", n), {},
+                   entity);
+    };
+    for (const RossBearing& b : rotor_.bearings)
+      say(b.n, b.entity);
+    for (const RossDisk& m : rotor_.masses)
+      say(m.n, m.entity);
   }
 
   Value steps() {

@@ -181,6 +181,37 @@ TEST(Convert, PedestalsAndTablesOfRoss) {
   EXPECT_TRUE(says(c, "its last row holds"));
 }
 
+// What ties the mass of a pedestal to the ground may be several elements, and some of them have mass.
+TEST(Convert, APedestalHasAllThatTiesItToTheGround) {
+  const std::string shaft = "{" + ross_shaft(0, 0.5, 0.05) + "," + ross_shaft(1, 0.5, 0.05);
+  const std::string right = R"(,"BearingElement_right": {"n": 2, "kxx": [1e7]}})";
+  const std::string left = R"(,"BearingElement_left": {"n": 0, "n_link": 3, "kxx": [2e7]})";
+  const Converted c = convert::convert_ross_json(
+      shaft + left +
+          R"(,"BearingElement_springs": {"n": 3, "kxx": [1e8], "kyy": [2e8], "kxy": [3e6]},
+"BearingElement_dampers": {"n": 3, "kxx": [1e6], "kyy": [0], "cxx": [5e4], "cyy": [6e4], "mxx": [7], "myy": [7]},
+"PointMass_p": {"n": 3, "m": 12.0}, "PointMass_q": {"n": 3, "m": 1.0},
+"BearingElement_beside": {"n": 8, "kxx": [1e8]})" +
+          right,
+      "r");
+  const deck::Deck read = deck::read_deck_text(c.text);
+  ASSERT_TRUE(read.ok()) << read.report() << c.text;
+  const auto& pedestal = read.model.bearings.at(0).pedestal;
+  ASSERT_TRUE(pedestal);
+  EXPECT_DOUBLE_EQ(pedestal->mass, 20.0);
+  EXPECT_DOUBLE_EQ(pedestal->K(1, 1), 1.01e8);
+  EXPECT_DOUBLE_EQ(pedestal->K(2, 2), 2e8);
+  EXPECT_DOUBLE_EQ(pedestal->K(1, 2), 3e6);
+  EXPECT_DOUBLE_EQ(pedestal->C(1, 1), 5e4);
+  EXPECT_DOUBLE_EQ(pedestal->C(2, 2), 6e4);
+  EXPECT_TRUE(says(c, "node 8, which no bearing ties to the shaft"));
+
+  const std::string shared =
+      R"(,"BearingElement_inner": {"n": 1, "n_link": 3, "kxx": [2e7]}, "BearingElement_g": {"n": 3, "kxx": [1e8]})";
+  EXPECT_NE(refusal(shaft + left + shared + right).find("carries another element too"),
+            std::string::npos);
+}
+
 TEST(Convert, WhatIsNotTakenIsSaid) {
   const std::string json =
       "{" + ross_shaft(0, 0.5, 0.05, ", \"axial_force\": 1000.0, \"gyroscopic\": false") +
@@ -381,4 +412,29 @@ TEST(Convert, ColumnsOfMassAreNotDroppedForASpelling) {
   } catch (const Error& e) {
     EXPECT_EQ(e.diagnostics().front().message, "the unit of column 'Mass [stone]' is none of kg");
   }
+}
+
+// A rotor of another material than its table says is another rotor.
+TEST(Convert, MaterialsOfATableAreItsOwn) {
+  const auto material = [](const char* text) {
+    const deck::Deck read = deck::read_deck_text(convert::convert_csv(text, "x.csv").text);
+    EXPECT_TRUE(read.ok()) << read.report();
+    return read.model.materials.at(read.model.shafts.at(0).sections.at(0).material);
+  };
+  EXPECT_NEAR(material("Length [mm],OD [mm],Material\n500,50,Aluminium\n").E, 68.3e9, 1e3);
+  EXPECT_NEAR(material("Length [mm],OD [mm],Material\n500,50,stainless steel\n").rho, 7900, 1e-9);
+  EXPECT_NEAR(
+      material("Length [mm],OD [mm],Material,E [GPa],Density [kg/m3]\n500,50,A,70,2700\n").E, 70e9,
+      1e3);
+  for (const char* unknown : {"Length [mm],OD [mm],E [GPa]\n500,50,70\n",
+                              "Length [mm],OD [mm],Density [kg/m3]\n500,50,1\n",
+                              "Length [mm],OD [mm],Material\n500,50,wood\n",
+                              "Length [mm],OD [mm],E [GPa],Density [kg/m3]\n500,50,,2700\n"})
+    EXPECT_THROW(convert::convert_csv(unknown, "x.csv"), Error) << unknown;
+}
+
+TEST(Convert, ABoreWithoutStiffnessIsTaken) {
+  const Converted c = convert::convert_csv(
+      "Length [mm],OD [mm],ID [mm],Stiffness ID [mm]\n500,50,10,20\n", "x.csv");
+  EXPECT_NE(c.text.find("500.0, 50.0, 10.0, 50.0, 10.0, 50.0, 20.0"), std::string::npos) << c.text;
 }
