@@ -65,7 +65,9 @@ double clamped_compliance(const EndProperties& p, double h) {
 bool resolves(const EndProperties& p, double h, const Resolution& r, double accuracy) {
   if (p.EI > 0 && r.lateral * r.lateral * clamped_compliance(p, h) > 2.0 * accuracy) return false;
   const double twist = p.GJ > 0 ? r.torsional * h * std::sqrt(p.rhoIp / p.GJ) : 0.0;
-  return std::pow(twist, 4) <= 240.0 * accuracy;
+  constexpr double held_by_bodies =
+      1.0 / 3.0;  // of the kinetic energy in the highest mode asked for
+  return twist * twist <= std::min(std::sqrt(240.0 * accuracy), 24.0 / held_by_bodies * accuracy);
 }
 
 /// Frequency of the n-th lateral mode at most, rad/s; see the header.
@@ -82,6 +84,29 @@ double lateral_bound(const Model& m, int modes) {
   return waves > 0 ? std::pow(half_waves * pi / waves, 2) : 0.0;
 }
 
+/// Half-waves of torsion that a shaft free at both ends has room for at a frequency: with phi = r cos p,
+/// T = -Z omega r sin p, Z = sqrt(GJ rhoIp), p grows by omega/c over a section and turns where Z jumps, and
+/// as many modes lie below as p has passed multiples of pi (H. Pruefer, Math. Ann. 95, 1926, doi
+/// 10.1007/BF01206624).
+double torsional_half_waves(const Model& m, const Shaft& shaft, double omega) {
+  double phase = 0.0, impedance = 0.0;
+  for (const Section& s : shaft.sections) {
+    if (s.rigid) continue;
+    const EndProperties a = properties_at(m, s, false), b = properties_at(m, s, true);
+    if (!(a.GJ > 0 && b.GJ > 0 && a.rhoIp > 0 && b.rhoIp > 0)) continue;
+    const double here = std::pow(a.GJ * a.rhoIp * b.GJ * b.rhoIp, 0.25);
+    if (impedance > 0.0) {
+      const double passed = pi * std::floor(phase / pi + 0.5);
+      phase = passed + std::atan(impedance / here * std::tan(phase - passed));
+    }
+    impedance = here;
+    phase += omega * 0.5 * s.length * (std::sqrt(a.rhoIp / a.GJ) + std::sqrt(b.rhoIp / b.GJ));
+  }
+  return phase / pi;
+}
+
+/// Frequency of the n-th elastic torsional mode at most, rad/s: bodies lower what the bare shafts have, a
+/// tie between two shafts raises one mode at most to the next.
 double torsional_bound(const Model& m, int modes) {
   double time = 0;  // int sqrt(rhoIp/GJ) ds
   for (const Shaft& shaft : m.shafts)
@@ -91,7 +116,25 @@ double torsional_bound(const Model& m, int modes) {
       if (a.GJ > 0 && b.GJ > 0)
         time += 0.5 * s.length * (std::sqrt(a.rhoIp / a.GJ) + std::sqrt(b.rhoIp / b.GJ));
     }
-  return time > 0 ? modes * pi / time : 0.0;
+  if (!(time > 0)) return 0.0;
+  const double wanted = modes + static_cast<double>(m.shafts.size()) - 1.0;
+  constexpr double rounding = 1e-9;
+  const auto reached = [&](double omega) {
+    double count = 0;
+    for (const Shaft& shaft : m.shafts)
+      count += std::floor(torsional_half_waves(m, shaft, omega) + rounding);
+    return count >= wanted;
+  };
+  double low = 0.0, high = wanted * pi / time;
+  if (reached(high)) return high;
+  do {
+    low = high;
+    high *= 1.5;
+  } while (!reached(high));
+  constexpr double close_enough = 1e-3;
+  while (high - low > close_enough * high)
+    (reached(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  return high;
 }
 
 double top_of(const SpeedRange& r) {
