@@ -113,6 +113,7 @@ void resolve(const BentElement& e, const Mat3& chart, double x, SectionAxis& tra
     ey = transported.axis(p.line, chart, d);
   }
   const Vec3 ez = d.cross(ey);
+  p.normal = d;
   p.N = p.force.dot(d);
   p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
   p.T = p.moment.dot(d);

@@ -31,6 +31,7 @@ struct SectionPoint {
   double N = 0, T = 0;  ///< N, N m
   Vec2 V = Vec2::Zero(), M = Vec2::Zero();
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< the same in global axes
+  Vec3 normal = Vec3::UnitX();                       ///< of the section, global axes
   bool has_stress = false;
   double axial = 0, bending = 0, torsion = 0, von_mises = 0;  ///< Pa; axial is signed
 };

@@ -40,12 +40,14 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
   const auto found = settle_on(built.system, fine, job, equilibrium, load);
   if (!found || found->state.frames.moved()) return std::nullopt;
   StaticAccuracy out;
-  double most = 0;
+  double most = 0;  // between the nodes of the own mesh too
+  for (const meshes::Line& line : fine.mesh.lines)
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+      most = std::max(most, found->state.q.segment<3>(6 * n).norm());
   for (const meshes::Line& line : job.mesh.lines)
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
       const Vec3 u = own.q.segment<3>(6 * n);
       const Vec3 refined = found->state.q.segment<3>(6 * fine.node[static_cast<std::size_t>(n)]);
-      most = std::max(most, u.norm());
       if (const double moved = (refined - u).norm(); moved > out.error) {
         out.error = moved;
         out.shaft = line.name;

@@ -1,4 +1,6 @@
 // Deflected centre lines of a static state.
+#include <assembly/element_section.hpp>
+#include <assembly/section_results.hpp>
 #include <core/rotation.hpp>
 #include <results/along_shaft.hpp>
 #include <results/static_parts.hpp>
@@ -12,6 +14,58 @@ namespace whirl::results {
 
 namespace {
 
+constexpr int stretches = 8;  ///< of an element, between the points at which it is drawn
+
+/// How far the centre line of each element lies beside the cubic through its ends with the directors as
+/// slopes: what weight and shear add between nodes. With the exact section forces (section_results.hpp)
+///   d' = M x d/EI,  r' = d + (F - F.d d)/kGA
+/// integrated from the left end, less the cubic of what is left at the right one. Zero where the section
+/// is none of a shaft with one stiffness, or the line follows a path.
+class BetweenNodes {
+ public:
+  using Points = std::array<Vec3, stretches + 1>;
+  BetweenNodes(const run::Job& job, const system::Workspace& state)
+      : job_(job),
+        forces_(assembly::calc_section_results(job.model, job.mesh, job.built, state, inner)) {}
+
+  Points of(std::size_t element) const;
+
+ private:
+  static constexpr int inner = 2 * stretches - 1;  ///< ends and middle of every stretch
+  const run::Job& job_;
+  std::vector<assembly::SectionPoint> forces_;
+};
+
+BetweenNodes::Points BetweenNodes::of(std::size_t element) const {
+  Points out;
+  out.fill(Vec3::Zero());
+  const meshes::Element& e = job_.mesh.elements[element];
+  const model::Shaft& shaft = job_.model.shafts[at(e.line)];
+  if (!shaft.path.empty() || shaft.sections[e.section].general) return out;
+  const elements::ElementSection section = assembly::element_section(job_.model, e);
+  const double h = (e.s2 - e.s1) / stretches;
+  std::array<Vec3, inner + 2> bending, shear;
+  for (std::size_t k = 0; k < bending.size(); ++k) {
+    const assembly::SectionPoint& p = forces_[element * bending.size() + k];
+    const elements::SectionProperties s = section.at(p.xi);
+    bending[k] = p.moment.cross(p.normal) / s.EI;
+    shear[k] = (p.force - p.force.dot(p.normal) * p.normal) / s.kGA;
+  }
+  Vec3 slope = Vec3::Zero();
+  for (std::size_t k = 0; k < stretches; ++k) {  // Simpson's rule
+    const Vec3 &a = bending[2 * k], &middle = bending[2 * k + 1], &b = bending[2 * k + 2];
+    const Vec3 by_shear = h / 6.0 * (shear[2 * k] + 4.0 * shear[2 * k + 1] + shear[2 * k + 2]);
+    out[k + 1] = out[k] + h * slope + h * h / 6.0 * (a + 2.0 * middle) + by_shear;
+    slope += h / 6.0 * (a + 4.0 * middle + b);
+  }
+  const Vec3 end = out.back(), turn = (e.s2 - e.s1) * slope;
+  for (std::size_t k = 0; k <= stretches; ++k) {
+    const double x = static_cast<double>(k) / stretches;
+    out[k] -= x * x * ((3.0 - 2.0 * x) * end + (x - 1.0) * turn);
+  }
+  return out;
+}
+
 /// The deflected centre line of one line of the mesh.
 class DeflectedLine {
  public:
@@ -22,7 +76,7 @@ class DeflectedLine {
         line_(job.mesh.lines[line]),
         path_(job.model.shafts[line].path) {}
   void add_stations(io::Table& t);
-  void add_elements();
+  void add_elements(const BetweenNodes& between);
   /// No axes where nothing moves.
   plot::Figure figure(const std::string& step) const;
   /// The largest deflection, where there is one.
@@ -59,6 +113,7 @@ class DeflectedLine {
     return {job_.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
   }
   void add_point(double s, const Vec3& u);
+  void look_between_points();
 
   const run::Job& job_;
   const system::Workspace& state_;
@@ -92,8 +147,8 @@ void DeflectedLine::add_stations(io::Table& t) {
   }
 }
 
-/// Between nodes: the cubic with the directors as end slopes.
-void DeflectedLine::add_elements() {
+/// Between nodes: the cubic with the directors as end slopes, and what lies beside it.
+void DeflectedLine::add_elements(const BetweenNodes& between) {
   for (Index k = line_.first_element; k < line_.first_element + line_.elements; ++k) {
     const meshes::Element& e = job_.mesh.elements[at(k)];
     meshes::Pose a = pose(e.left), b = pose(e.right);
@@ -103,11 +158,14 @@ void DeflectedLine::add_elements() {
     }
     // end slopes for the stretched length (thermal growth): chord, and the arc over it
     const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
-    for (int i = k == line_.first_element ? 0 : 1; i <= 8; ++i) {
-      const double xi = i / 8.0, s = e.s1 + xi * (e.s2 - e.s1);
-      add_point(s, meshes::interpolate(a, b, arc, xi).r - job_.model.shafts[number_].position(s));
+    const BetweenNodes::Points beside = between.of(at(k));
+    for (int i = k == line_.first_element ? 0 : 1; i <= stretches; ++i) {
+      const double xi = static_cast<double>(i) / stretches, s = e.s1 + xi * (e.s2 - e.s1);
+      add_point(s, meshes::interpolate(a, b, arc, xi).r + beside[static_cast<std::size_t>(i)] -
+                       job_.model.shafts[number_].position(s));
     }
   }
+  look_between_points();
 }
 
 void DeflectedLine::add_point(double s, const Vec3& u) {
@@ -117,10 +175,26 @@ void DeflectedLine::add_point(double s, const Vec3& u) {
   y_.y.push_back(u.y());
   z_.x.push_back(s);
   z_.y.push_back(u.z());
-  if (const double size = size_of(u); size > largest_ * (1 + 1e-9)) {
-    largest_ = size;
+}
+
+void DeflectedLine::look_between_points() {
+  const auto size = [&](std::size_t k) { return size_of(Vec3(x_.y[k], y_.y[k], z_.y[k])); };
+  const auto take = [&](double s, double u) {
+    if (!(u > largest_ * (1 + 1e-9))) return;
+    largest_ = u;
     where_ = s;
     largest_station_ = nullptr;
+  };
+  for (std::size_t k = 0; k < x_.x.size(); ++k) {
+    take(x_.x[k], size(k));
+    if (k == 0 || k + 1 == x_.x.size()) continue;
+    // the vertex of the parabola through three points
+    const double a = x_.x[k - 1] - x_.x[k], b = x_.x[k + 1] - x_.x[k];
+    const double before = (size(k - 1) - size(k)) / a, after = (size(k + 1) - size(k)) / b;
+    const double bend = (after - before) / (b - a), slope = before - a * bend;
+    const double at_vertex = -0.5 * slope / bend;
+    if (bend < 0.0 && at_vertex > a && at_vertex < b)
+      take(x_.x[k] + at_vertex, size(k) + 0.5 * slope * at_vertex);
   }
 }
 
@@ -176,10 +250,11 @@ void add_deflection(const run::Job& job, const std::string& step, const system::
                             {"slope_y", "rad", "d_y of the section normal"},
                             {"slope_z", "rad", "d_z; along a path of the axes at the place"},
                             {"phi", "rad", "axial angle; of standing paths about the line"}};
+  const BetweenNodes between(job, state);
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
     DeflectedLine line(job, state, l);
     line.add_stations(out.deflection);
-    line.add_elements();
+    line.add_elements(between);
     if (plot::Figure f = line.figure(step); !f.axes.empty()) out.figures.push_back(std::move(f));
     line.say_largest(out.lines, summary);
   }

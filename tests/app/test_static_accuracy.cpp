@@ -94,6 +94,58 @@ std::optional<Found> found_in(const std::string& deck) {
 
 }  // namespace
 
+// One element a span has nodes at the supports alone, and all of the sag lies between them: it was drawn
+// by the cubic of the end slopes, four fifths of it.
+TEST(StaticAccuracy, SagBetweenNodesIsThatOfTheBeam) {
+  constexpr double E = 200e9, G = E / 2.6, rho = 7800, g = 9.80665, pi = 3.14159265358979;
+  const auto largest = [&](const std::string& rows, const std::string& supports, int elements) {
+    const DeckRun run(
+        "format = 1\n[model]\n" +
+        (elements > 0 ? "mesh = { min_elements_per_section = " + std::to_string(elements) + " }\n"
+                      : std::string()) +
+        "[output]\nreport = false\n[[material]]\nname = \"m\"\nE = \"200 GPa\"\nnu = 0.3\n"
+        "density = \"7800 kg/m^3\"\n[[shaft]]\nname = \"a\"\nmaterial = \"m\"\ncolumns = "
+        "[\"name\", \"length[mm]\", \"od_l[mm]\", \"id_l[mm]\", \"od_r[mm]\", "
+        "\"id_r[mm]\"]\nrows = [" +
+        rows + "]\n" + supports + "[[step]]\nname = \"s\"\ntype = \"static\"\n");
+    EXPECT_EQ(run.exit, 0) << run.log;
+    EXPECT_FALSE(run.says("W10")) << run.log;
+    return run.summary("s").at("deflection").at("a").at("largest [m]").number();
+  };
+  const auto at = [](const char* place, bool clamped = false) {
+    return std::string("[[bearing]]\nat = \"") + place +
+           "\"\ntype = \"rigid\"\ndirections = [\"x\", \"y\", \"z\"" +
+           (clamped ? ", \"rx\", \"ry\", \"rz\"]\n" : "]\n");
+  };
+  const auto beside = [](const char* place) {
+    return std::string("[[bearing]]\nat = \"") + place +
+           "\"\ntype = \"rigid\"\ndirections = [\"y\", \"z\"]\n";
+  };
+  for (const double id : {0.0, 0.03}) {
+    const double od = 0.06, L = 1.2;
+    const double A = pi / 4 * (od * od - id * id),
+                 I = pi / 64 * (std::pow(od, 4) - std::pow(id, 4));
+    const double m = id / od, q = (1 + m * m) * (1 + m * m), nu = 0.3;
+    const double kappa = 6 * (1 + nu) * q / ((7 + 6 * nu) * q + (20 + 12 * nu) * m * m);  // Cowper
+    const double w = rho * A * g;
+    const std::string row = "[\"s\", 1200, 60, " + std::to_string(1000 * id) + ", 60, " +
+                            std::to_string(1000 * id) + "]";
+    const double exact = 5 * w * std::pow(L, 4) / (384 * E * I) + w * L * L / (8 * kappa * G * A);
+    EXPECT_NEAR(largest(row, at("s:start") + beside("s:end"), 0) / exact, 1.0, 1e-5);
+    const double clamped = w * std::pow(L, 4) / (384 * E * I) + w * L * L / (8 * kappa * G * A);
+    EXPECT_NEAR(largest(row, at("s:start", true) + at("s:end", true), 0) / clamped, 1.0, 1e-3);
+  }
+  // spans, cones: against many elements
+  for (const auto& [rows, supports] :
+       {std::pair<std::string, std::string>{
+            "[\"s\", 600, 60, 30, 60, 30], [\"t\", 600, 60, 30, 60, 30]",
+            at("s:start") + beside("s:end") + beside("t:end")},
+        {"[\"s\", 900, 80, 0, 50, 0], [\"t\", 300, 40, 0, 40, 0]", at("s:start") + beside("t:end")},
+        {"[\"s\", 900, 80, 10, 80, 10], [\"t\", 400, 60, 0, 30, 0]",
+         at("s:start") + beside("s:end")}})
+    EXPECT_NEAR(largest(rows, supports, 0) / largest(rows, supports, 40), 1.0, 1e-3) << rows;
+}
+
 TEST(StaticAccuracy, IsThatOfAMeshMuchFiner) {
   const auto fine = found_in(bent(64));
   ASSERT_TRUE(fine);
