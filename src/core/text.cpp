@@ -1,4 +1,5 @@
 #include <core/text.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -174,10 +175,16 @@ std::string safe_name(std::string_view name) {
   std::string s;
   for (const char c : name) {
     const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '-' || c == '_' || c == '.';
+                      c == '-' || c == '_' || c == '.' || static_cast<unsigned char>(c) >= 0x80;
     s += good ? c : '_';
   }
   if (s.empty() || s[0] == '.') s.insert(s.begin(), '_');
+  return s;
+}
+
+std::string safe_stem(std::string_view name) {
+  std::string s = safe_name(name);
+  std::replace(s.begin(), s.end(), '.', '_');
   return s;
 }
 

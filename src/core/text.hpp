@@ -18,9 +18,12 @@ std::string power_of_ten(int exponent);
 /// Width of a line of text in px at a font size, for a Helvetica-like face; an estimate, good to
 /// some per cent.
 double text_width(std::string_view utf8, double font_size);
-/// Letters, digits, '.', '-' and '_' of a name, the rest as '_': good for files, anchors and ids.
+/// Letters of any script, digits, '.', '-' and '_' of a name in UTF-8, the rest as '_': good for files,
+/// anchors and ids.
 /// Never empty, never starts with '.'.
 std::string safe_name(std::string_view name);
+/// The same without '.', for what an extension follows.
+std::string safe_stem(std::string_view name);
 std::string base64(std::string_view bytes);
 
 }  // namespace whirl

@@ -35,8 +35,11 @@ bool Reader::name(model::Entity& entity, const char* kind) {
   else if (given && std::any_of(name.begin(), name.end(), control))
     problem("E14", spot, fmt::format("the name \"{}\" has a control character", name),
             "a name is one line of letters, digits and signs");
-  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos ||
-                     name.size() > 100))
+  else if (given && name.size() > 100)
+    problem("E14", spot,
+            fmt::format("the name \"{}...\" has {} bytes", name.substr(0, 20), name.size()),
+            "names stand in names of files and titles of columns: 100 at most");
+  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos))
     problem("E14", spot,
             name.empty()
                 ? std::string("the name is empty")

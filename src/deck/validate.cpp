@@ -147,6 +147,7 @@ void check_effects(const model::Model& m, Problems& out) {
 
 std::vector<WholeModelProblem> check_model(const model::Model& m) {
   Problems out;
+  check_names(m, out);
   check_restraint(m, out);
   check_tables(m, out);
   check_linear(m, out);

@@ -13,6 +13,10 @@ using Problems = std::vector<WholeModelProblem>;
 void report(Problems& p, const char* code, std::string message, std::string hint,
             const Where& where, Diagnostic::Severity severity = Diagnostic::Severity::error);
 
+// validate_names.cpp
+/// No two things write one file of results.
+void check_names(const model::Model& m, Problems& out);
+
 // validate_restraint.cpp: what holds the shafts
 void check_restraint(const model::Model& m, Problems& out);
 void check_preloads(const model::Model& m, Problems& out);

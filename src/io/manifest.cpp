@@ -114,8 +114,18 @@ void Manifest::append(const std::string& line) {
   if (n != static_cast<ssize_t>(text.size())) io_failure(list, "cannot write", n < 0 ? e : ENOSPC);
 }
 
-void Manifest::claim(std::string_view given) {
+void Manifest::claim(std::string_view given, const std::string& owner) {
   const std::string name(given);
+  if (!owner.empty())
+    if (const auto [before, fresh] = owner_.emplace(name, owner); !fresh && before->second != owner)
+      throw Error(
+          Exit::deck,
+          Diagnostic{Diagnostic::Severity::error,
+                     "E16",
+                     fmt::format("step '{}' would write the file '{}' over that of step '{}'",
+                                 owner, name, before->second),
+                     "rename one of the steps",
+                     {}});
   if (!inside(name))
     io_failure(root_ / name,
                "nothing is written through a symbolic link, or outside the results folder:");

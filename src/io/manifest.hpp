@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace whirl::io {
@@ -22,7 +23,9 @@ class Manifest {
   /// error.
   /// @throws Error (Exit::io, E91) when a folder on the way is a symbolic link, or the name leads
   /// out of the results folder.
-  void claim(std::string_view name);
+  /// @throws Error (E16) when another owner of this run has written it; owner: who writes, empty: nobody
+  /// that could meet another.
+  void claim(std::string_view name, const std::string& owner = {});
   bool lists(std::string_view name) const { return names_.count(std::string(name)) != 0; }
   /// Removes the listed regular files that `which` accepts. Their names stay listed.
   void remove(const std::function<bool(const std::string& name)>& which) const;
@@ -33,7 +36,8 @@ class Manifest {
 
   std::filesystem::path root_;
   std::unordered_set<std::string> names_;
-  bool older_ = false;  ///< results of a program that kept no list
+  std::unordered_map<std::string, std::string> owner_;  ///< of files written in this run
+  bool older_ = false;                                  ///< results of a program that kept no list
 };
 
 }  // namespace whirl::io

@@ -129,7 +129,7 @@ ResultsFolder::ResultsFolder(fs::path root) : root_(std::move(root)) {
 }
 
 fs::path ResultsFolder::path(std::string_view name) const {
-  manifest_->claim(name);
+  manifest_->claim(name, owner_);
   const fs::path p = root_ / name;
   std::error_code ec;
   fs::create_directories(p.parent_path(), ec);

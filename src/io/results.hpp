@@ -137,6 +137,8 @@ class ResultsFolder {
   /// written.
   explicit ResultsFolder(std::filesystem::path root);
   const std::filesystem::path& root() const { return root_; }
+  /// Who writes from now on, by name: two owners do not write one file.
+  void set_owner(std::string owner) { owner_ = std::move(owner); }
   /// Path of a file that will be written in it, and listed as such; makes the folders in between.
   std::filesystem::path path(std::string_view name) const;
   /// Path of a folder in it, made when missing.
@@ -152,6 +154,7 @@ class ResultsFolder {
  private:
   std::filesystem::path root_;
   std::shared_ptr<Manifest> manifest_;
+  std::string owner_;
 };
 
 }  // namespace whirl::io

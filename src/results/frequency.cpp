@@ -1,3 +1,4 @@
+#include <core/text.hpp>
 #include <model/full_section.hpp>
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
@@ -227,10 +228,7 @@ analysis::Motion FrequencyStep::motion() const {
 }
 
 std::string FrequencyStep::file(const std::string& name) const {
-  std::string out = step.name + "_" + name;
-  for (char& c : out)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-  return out;
+  return safe_stem(step.name + "_" + name);
 }
 
 void FrequencyStep::add_table(const std::string& name, io::Table table, bool shown) {

@@ -99,12 +99,6 @@ class SetReport {
   std::size_t order_ = 0;  ///< of the response: that of the rotor's speed
 };
 
-std::string safe_file(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-  return name;
-}
-
 void SetReport::add(Check c, const std::string& where, std::string figure, std::string source) {
   c.set = machine_.set;
   c.where = where;
@@ -325,7 +319,7 @@ model::Model SetReport::model_with(const PlacedMode& mode) const {
 }
 
 std::string SetReport::bode_of(const model::Step& of, const std::string& probe) const {
-  return safe_file(of.name + "_" + probe + "_bode");
+  return safe_stem(of.name + "_" + probe + "_bode");
 }
 
 /// Lines at the operating speeds, and at a limit (m peak to peak; 0: none).
@@ -397,8 +391,8 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
   }
   add(*worst, where, figure,
       source({"margin", "margin_factor", "margin_offset", "margin_above", "damped"}));
-  job_.folder.write_table(safe_file(of.name + "_margins") + ".csv", t);
-  section.files.emplace_back(t.title, safe_file(of.name + "_margins") + ".csv");
+  job_.folder.write_table(safe_stem(of.name + "_margins") + ".csv", t);
+  section.files.emplace_back(t.title, safe_stem(of.name + "_margins") + ".csv");
   section.tables.push_back(std::move(t));
 }
 
@@ -474,15 +468,15 @@ void SetReport::add_clearances(const PlacedMode& mode, const model::Step& of,
       {false, 100 * law_.limits.clearance, "limit", {plot::ink, plot::Dash::dashed, 1.2}});
   axes.rules.push_back({true, to_rpm(law_.trip), "trip", {plot::ink, plot::Dash::dash_dot, 0.8}});
   plot::Figure f;
-  f.name = safe_file(of.name + "_clearances");
+  f.name = safe_stem(of.name + "_clearances");
   f.title = fmt::format("Close clearances, unbalance of mode {}", mode.number);
   f.axes.push_back(std::move(axes));
   add(results::compare("close clearances", 100 * worst, "%", Check::Rule::at_most,
                        100 * law_.limits.clearance),
       fmt::format("mode {}, {}, scale {:.4g}", mode.number, law_.clearances[worst_at].name, scale),
       f.name, source({"clearance", "scale", "vibration", "vibration_speed"}));
-  job_.folder.write_table(safe_file(of.name + "_clearances") + ".csv", t);
-  section.files.emplace_back(t.title, safe_file(of.name + "_clearances") + ".csv");
+  job_.folder.write_table(safe_stem(of.name + "_clearances") + ".csv", t);
+  section.files.emplace_back(t.title, safe_stem(of.name + "_clearances") + ".csv");
   section.tables.push_back(std::move(t));
   if (job_.model.output.report) section.figures.push_back(std::move(f));
 }
@@ -571,7 +565,7 @@ void add_head(run::Job& job, const model::Step& step, const model::ApiLateralSte
       failed, checks.checks().size(), to_rpm(law.operating[0]), to_rpm(law.operating[1]),
       to_rpm(law.trip));
   const auto table = [&](const char* name, io::Table t) {
-    const std::string file = safe_file(step.name + "_" + name) + ".csv";
+    const std::string file = safe_stem(step.name + "_" + name) + ".csv";
     job.folder.write_table(file, t);
     head.files.emplace_back(t.title, file);
     head.tables.push_back(std::move(t));

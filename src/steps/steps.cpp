@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <type_traits>
 
 namespace whirl::steps {
@@ -134,13 +135,19 @@ void write_report(run::Job& job, const RunTime& time) {
   rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
   job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
   io::write_report(job.folder.path("report.html"), job.report);
+  std::map<std::string, int> figures;  // of one name: the second is NAME-2
   for (const io::ReportSection& s : job.report.sections)
-    for (const plot::Figure& f : s.figures)
-      job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
+    for (const plot::Figure& f : s.figures) {
+      const int n = ++figures[f.name];
+      job.folder.write_text(
+          fmt::format("plots/{}{}.svg", f.name, n > 1 ? fmt::format("-{}", n) : std::string()),
+          plot::render_svg(f));
+    }
 }
 
 /// Summary and report of what has run.
 void finish(run::Job& job, const Stopwatch& watch) {
+  job.folder.set_owner({});
   report_nonfinite(job);
   take_times(job, watch);
   if (job.model.output.report) {
@@ -314,6 +321,7 @@ void run_steps(run::Job& job) {
     for (const model::Step& step : job.model.steps) {
       running = step.name;
       if (run::interrupted()) break;
+      job.folder.set_owner(step.name);
       run_step(job, step);
     }
   } catch (const Interrupted&) {

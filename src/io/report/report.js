@@ -462,7 +462,7 @@
     for (const use of svg.querySelectorAll("use.again")) {
       const [sx, , , sy, tx, ty] = numbers(use.getAttribute("transform").slice(7, -1));
       const X = (v) => n2(sx * v + tx), Y = (v) => n2(sy * v + ty), group = use.parentElement;
-      group.innerHTML = document.querySelector(use.getAttribute("href")).innerHTML;
+      group.innerHTML = document.getElementById(use.getAttribute("href").slice(1)).innerHTML;
       for (const p of group.querySelectorAll("path")) {
         if (p.closest("defs")) continue;
         const d = p.getAttribute("d");
