@@ -274,3 +274,15 @@ report = false
   EXPECT_NEAR(e.supplied, 5.04e-3, 0.01 * 5.04e-3);
   EXPECT_NEAR(e.dissipated, e.supplied, 0.02 * e.supplied);
 }
+
+// A prescribed speed that jumps puts the rotor's energy in by an impulse.
+TEST(EnergyBalance, AJumpOfThePrescribedSpeedIsSupplied) {
+  const Energy e = run(rotor(
+      springs,
+      drive("type = \"speed\"\nspeed = { type = \"piecewise\", pieces = [{ start = \"0 s\", law "
+            "= \"0 rpm\" }, { start = \"0.04 s\", law = \"600 rpm\" }, { start = \"0.07 s\", "
+            "law = \"-900 rpm\" }] }\n"),
+      ""));
+  expect_closed(e);
+  EXPECT_GT(e.supplied, 1000.0);  // 0.3 kg m2 at 900 rpm
+}

@@ -357,6 +357,11 @@ void EnergyBalance::step_by_residual(StepAccess& s, double work) {
 }
 
 void EnergyBalance::step(StepAccess& s) {
+  if (jumps_at(s.t0())) {  // a speed that jumps gives or takes energy by an impulse
+    const double after = s.at(s.t0()).power().stored;
+    supplied_ += after - e1_;
+    e1_ = after;
+  }
   if (const std::optional<double> work = s.residual_work()) return step_by_residual(s, *work);
   const auto& [c, b] = radau_points();
   const double h = s.t1() - s.t0();
