@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace whirl::deck {
 
@@ -282,27 +283,55 @@ void check_beginnings(const model::Model& m, Problems& out) {
 }
 
 /// Windows of time in which no step runs: nothing would be written.
-void check_windows(const model::Model& m, Problems& out) {
+namespace {
+
+struct Stretch {
+  double begin, end;  ///< s
+};
+
+/// When the transients run; nothing where one goes on at a time that another run knows.
+std::optional<std::map<std::string, Stretch>> times_of_transients(const model::Model& m) {
   std::map<std::string, double> end;
-  double first = infinity, last = -infinity;
-  const model::Step* one = nullptr;
+  std::map<std::string, Stretch> out;
   for (const model::Step& s : m.steps) {
     const auto before = end.find(s.from);
     const double begin = before == end.end() ? 0.0 : before->second;
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     end[s.name] = begin + (t ? t->duration : 0.0);
     if (!t) continue;
-    if (!t->previous.empty()) return;  // goes on at a time that another run knows
-    first = std::min(first, begin);
-    last = std::max(last, end[s.name]);
-    one = &s;
+    if (!t->previous.empty()) return std::nullopt;
+    out[s.name] = {begin, end[s.name]};
   }
-  if (!one || (m.output.t0 < last && m.output.t1 > first)) return;
-  report(out, "W02",
-         fmt::format("the window of [output] from {:.6g} s to {:.6g} s holds nothing: transient "
-                     "steps run from {:.6g} s to {:.6g} s",
-                     m.output.t0, m.output.t1, first, last),
-         "no row of the histories would be written", one->where, Diagnostic::Severity::warning);
+  return out;
+}
+
+}  // namespace
+
+void check_windows(const model::Model& m, Problems& out) {
+  const auto times = times_of_transients(m);
+  if (!times || times->empty()) return;
+  const auto check = [&](double t0, double t1, const std::string& step, const char* what,
+                         const char* lost, const Where& where) {
+    double first = infinity, last = -infinity;
+    for (const auto& [name, stretch] : *times) {
+      if (!step.empty() && name != step) continue;
+      first = std::min(first, stretch.begin);
+      last = std::max(last, stretch.end);
+    }
+    if (!(last >= first) || (t0 < last && t1 > first)) return;
+    report(out, "W02",
+           fmt::format("the window of {} from {:.6g} s to {:.6g} s holds nothing: transient "
+                       "steps run from {:.6g} s to {:.6g} s",
+                       what, t0, t1, first, last),
+           lost, where, Diagnostic::Severity::warning);
+  };
+  Where where;
+  for (const model::Step& s : m.steps)
+    if (times->contains(s.name)) where = s.where;
+  check(m.output.t0, m.output.t1, {}, "[output]", "no row of the histories would be written",
+        where);
+  for (const model::VtkOutput& v : m.output.vtk)
+    check(v.t0, v.t1, v.step, "[[output.vtk]]", "no frame would be written", v.where);
 }
 
 namespace {

@@ -353,4 +353,9 @@ TEST(StaticStability, WindowAfterTheEndIsNamed) {
   };
   EXPECT_TRUE(DeckRun(deck("[\"1 s\", \"2 s\"]")).says("holds nothing"));
   EXPECT_FALSE(DeckRun(deck("[\"0.5 ms\", \"2 s\"]")).says("holds nothing"));
+  const auto frames = [&](const std::string& window) {
+    return column(0.1, run) + "[[output.vtk]]\nwindow = " + window + "\n";
+  };
+  EXPECT_TRUE(DeckRun(frames("[\"1 s\", \"2 s\"]")).says("no frame would be written"));
+  EXPECT_FALSE(DeckRun(frames("[\"0.5 ms\", \"2 s\"]")).says("holds nothing"));
 }
