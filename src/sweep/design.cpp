@@ -106,13 +106,14 @@ void read_range(const std::string& text, std::vector<std::string> parts, Factor&
   }
 }
 
-void read_list(const std::vector<std::string>& parts, Factor& f) {
+/// Numbers, which stand in the tables of results without their units, or words.
+void read_list(const std::string& text, const std::vector<std::string>& parts, Factor& f) {
   f.values = parts;
-  if (std::all_of(parts.begin(), parts.end(), [](const auto& p) { return number_of(p).ok; })) {
-    f.unit = number_of(parts.back()).unit;
-    for (const std::string& p : parts)
-      if (number_of(p).unit != f.unit) f.unit.clear();
-  }
+  if (!std::all_of(parts.begin(), parts.end(), [](const auto& p) { return number_of(p).ok; }))
+    return;
+  numbers_of(text, parts, f.unit);
+  for (std::string& value : f.values)  // "60, 75, 90 um"
+    if (number_of(value).unit.empty() && !f.unit.empty()) value += " " + f.unit;
 }
 
 struct LawName {
@@ -219,7 +220,7 @@ Factor read_factor(const std::string& text) {
   if (ends.size() > 1 && number_of(ends[0]).ok)
     read_range(text, ends, f);
   else
-    read_list(split(values, ','), f);
+    read_list(text, split(values, ','), f);
   if (std::any_of(f.values.begin(), f.values.end(), [](const auto& v) { return v.empty(); }))
     throw bad_factor(text, "an empty value", "values are parted by commas");
   return f;

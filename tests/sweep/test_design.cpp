@@ -24,6 +24,7 @@ TEST(SweepFactors, RangesListsAndUnits) {
   EXPECT_EQ(values_of("x = 0.1:0.3:3"), (std::vector<std::string>{"0.1", "0.2", "0.3"}));
   EXPECT_EQ(values_of("kind=plain, lobed"), (std::vector<std::string>{"plain", "lobed"}));
   EXPECT_EQ(read_factor("b.c=60 um, 70 um").unit, "um");
+  EXPECT_EQ(values_of("b.c=60, 70 um"), (std::vector<std::string>{"60 um", "70 um"}));
   EXPECT_EQ(read_factor("a.b=normal(30 kg, 5 %)").parameters, (std::vector<double>{30, 1.5}));
   EXPECT_EQ(read_factor("a.b=uniform(1, 3 kg)").unit, "kg");
 }
@@ -32,7 +33,8 @@ TEST(SweepFactors, WhatIsNoFactorIsRefused) {
   for (const char* text :
        {"clearance", "=1:2:3", "a=", "a=1:2", "a=1:2:1", "a=1:2:x", "a=1um:2mm:3", "a=-1:2:3:log",
         "a=1:2:3:lin", "a=uniform(2, 1)", "a=uniform(1)", "a=normal(1, 0)", "a=triangular(1, 3, 2)",
-        "a=uniform(1, 2", "a=1,,2", "a=lognormal(1 um, 2 um)", "a=x:y:3:z:w,"})
+        "a=uniform(1, 2", "a=1,,2", "a=lognormal(1 um, 2 um)", "a=x:y:3:z:w,",
+        "k=3e6 N/m, 4 kN/mm"})
     EXPECT_THROW(
         {
           const Factor f = read_factor(text);
