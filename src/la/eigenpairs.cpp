@@ -95,13 +95,35 @@ void Eigenpairs::add_companions() {
     if (std::abs(p.lambda - rate) > 0.9 * std::abs(rate)) continue;
     polisher.assess(p);
     make_real(p);
-    const bool there = std::any_of(known.begin(), known.end(), [&](const Pair& k) {
-      return !k.rigid &&
-             std::abs(k.lambda - p.lambda) < 1e-3 * std::abs(p.lambda) + 10.0 * p.uncertainty;
-    });
-    if (!there) known.push_back(std::move(p));
+    constexpr double apart = 1e-3;
+    const auto alike = known_near(p, apart, false);  // several may die away at one rate
+    if (!spanned(p, alike)) known.push_back(std::move(p));
   }
   sort_known();
+}
+
+std::vector<const Pair*> Eigenpairs::known_near(const Pair& p, double apart, bool free) const {
+  std::vector<const Pair*> near;
+  for (const Pair& k : known)
+    if ((free || !k.rigid) &&
+        std::abs(k.lambda - p.lambda) <=
+            apart * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty))
+      near.push_back(&k);
+  return near;
+}
+
+bool Eigenpairs::spanned(const Pair& p, const std::vector<const Pair*>& by) const {
+  if (by.empty()) return false;
+  constexpr double new_part = 0.05;
+  const VecX weight = polisher.weights(p.lambda);
+  MatXc a(p.x.size(), static_cast<Index>(by.size()));
+  for (std::size_t j = 0; j < by.size(); ++j) {
+    a.col(static_cast<Index>(j)) = weight.cwiseProduct(by[j]->x);
+    a.col(static_cast<Index>(j)).normalize();
+  }
+  const VecXc x = weight.cwiseProduct(p.x);
+  const VecXc rest = ColumnSpan<Complex>(a).outside(x);
+  return rest.norm() < new_part * x.norm();
 }
 
 bool Eigenpairs::add(Pair&& p) {
@@ -114,22 +136,8 @@ bool Eigenpairs::add(Pair&& p) {
   }
   polisher.assess(p);
   if (!complex_shift()) make_real(p);
-  std::vector<const Pair*> close;
-  for (const Pair& k : known)
-    if (std::abs(k.lambda - p.lambda) <=
-        1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty))
-      close.push_back(&k);
-  if (!close.empty()) {
-    const VecX weight = polisher.weights(p.lambda);
-    MatXc a(p.x.size(), static_cast<Index>(close.size()));
-    for (std::size_t j = 0; j < close.size(); ++j) {
-      a.col(static_cast<Index>(j)) = weight.cwiseProduct(close[j]->x);
-      a.col(static_cast<Index>(j)).normalize();
-    }
-    const VecXc x = weight.cwiseProduct(p.x);
-    const VecXc rest = ColumnSpan<Complex>(a).outside(x);
-    if (rest.norm() < 0.05 * x.norm()) return false;
-  }
+  constexpr double apart = 1e-7;
+  if (spanned(p, known_near(p, apart, true))) return false;
   known.push_back(std::move(p));
   return true;
 }

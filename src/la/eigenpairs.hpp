@@ -23,6 +23,11 @@ struct Eigenpairs : ShiftedOperator {
   /// Adds a polished pair unless it is already there: its vector in the span of those with the same
   /// eigenvalue.
   bool add(Pair&& p);
+  /// Those whose eigenvalues are no further off than that share of it, or than they are uncertain; free
+  /// motions among them or not.
+  std::vector<const Pair*> known_near(const Pair& p, double apart, bool free) const;
+  /// Its vector lies in the span of theirs.
+  bool spanned(const Pair& p, const std::vector<const Pair*>& by) const;
   /// Takes a root that rounding alone keeps off the real axis for what it is.
   void make_real(Pair& p);
   static constexpr double real_line = 1e-9;  ///< |Im| over |lambda|

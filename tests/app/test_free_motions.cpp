@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
+#include <string>
+#include <vector>
 
 using whirl::test::Columns;
 using whirl::test::DeckRun;
@@ -204,4 +207,35 @@ TEST(FreeMotions, RoundingOfAMeanHoldsNoSpin) {
       EXPECT_EQ(run.csv("m_modes.csv").rows.size(), 2u) << run.log;
       EXPECT_TRUE(run.says("s: stable")) << run.log;
     }
+}
+
+// A rotor that dampers alone hold drifts to rest along both axes at one rate, c/m: a double root, of which
+// one was taken for a copy of the other.
+TEST(FreeMotions, BothRatesOfAFloatingRotorOnDampersAreListed) {
+  for (const double unequal : {1.0, 1.0 + 1e-9, 1.0 + 1e-5, 1.01, 3.0}) {
+    const double c = 400.0;
+    const std::string text =
+        "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = "
+        "\"s\"\nmaterial = "
+        "\"steel\"\n[[shaft.section]]\nname = \"s\"\nlength = \"1000 mm\"\nrigid = "
+        "true\n[[disk]]\nname = \"d\"\nat "
+        "= \"s:mid\"\nmass = \"20 kg\"\nIp = \"0.5 kg.m^2\"\nId = \"0.25 kg.m^2\"\n[[bearing]]\nat "
+        "= "
+        "\"s:mid\"\ntype = \"linear\"\nkxx = \"1e9 N/m\"\nkrr = \"1e7 N.m/rad\"\n" +
+        fmt::format("cyy = \"{} N.s/m\"\nczz = \"{:.12g} N.s/m\"\n", c, c * unequal) +
+        "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 12\nmotion = \"lateral\"\n";
+    const DeckRun run(text);
+    ASSERT_EQ(run.exit, 0) << unequal << run.log;
+    const Columns roots = run.csv("m_real_roots.csv");
+    ASSERT_EQ(roots.rows.size(), 4u) << unequal;
+    const std::size_t rate = roots.column("rate [1/s]");
+    std::vector<double> rates;
+    for (const auto& row : roots.rows)
+      rates.push_back(row[rate]);
+    std::sort(rates.begin(), rates.end());
+    EXPECT_NEAR(rates[0] / (-unequal * c / 20.0), 1.0, 1e-8) << unequal;
+    EXPECT_NEAR(rates[1] / (-c / 20.0), 1.0, 1e-8) << unequal;
+    EXPECT_EQ(rates[2], 0.0);
+    EXPECT_EQ(rates[3], 0.0);
+  }
 }
