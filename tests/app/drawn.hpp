@@ -52,14 +52,22 @@ struct DrawnCurve {
   std::vector<Pixel> points;  ///< of cartesian and polar axes
 };
 
+/// A curve in space at the moment shown; nan parts the pieces of one.
+struct DrawnSpaceCurve {
+  std::string name;
+  std::vector<Vec3> points;  ///< in the units of the axes
+};
+
 struct DrawnAxes {
   std::string kind, x_title, y_title;  ///< xy, polar or space; "time [s]"
   std::string right_title;
   std::vector<double> box, x, y;  ///< px: left, top, width, height; limits, 1: logarithmic
   std::vector<double> right;      ///< limits of the axis on the right, where there is one
+  std::vector<double> z, half;    ///< of a space: limits of z; half the edges of the box
   double zero_at = 0;             ///< deg
   bool clockwise = false;
   std::vector<DrawnCurve> curves;
+  std::vector<DrawnSpaceCurve> space;
 
   static double share(const std::vector<double>& limits, double v) {
     if (limits[2] != 0) return std::log(v / limits[0]) / std::log(limits[1] / limits[0]);
@@ -83,6 +91,11 @@ struct DrawnAxes {
       if (c.name == name) return &c;
     return nullptr;
   }
+  const DrawnSpaceCurve* space_curve(const std::string& name) const {
+    for (const DrawnSpaceCurve& c : space)
+      if (c.name == name) return &c;
+    return nullptr;
+  }
 };
 
 inline std::string title_of(const std::string& tag, const std::string& axis) {
@@ -98,6 +111,27 @@ inline DrawnCurve curve_of(const std::string& tag) {
   const std::vector<double> v = numbers_in(path);
   for (std::size_t i = 0; i + 1 < v.size(); i += 2)
     c.points.push_back({v[i], v[i + 1]});
+  return c;
+}
+
+/// Places in the box to places on the axes.
+inline DrawnSpaceCurve space_curve_of(const std::string& tag, const DrawnAxes& a) {
+  DrawnSpaceCurve c{attribute(tag, "data-name"), {}};
+  const std::vector<double>* limits[] = {&a.x, &a.y, &a.z};
+  const std::string xyz = attribute(tag, "data-xyz") + "|";
+  for (std::size_t begin = 0; begin < xyz.size();) {
+    const std::size_t end = xyz.find('|', begin);
+    const std::vector<double> v = numbers_in(xyz.substr(begin, end - begin));
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const std::size_t d = i % 3;
+      const double lo = (*limits[d])[0], hi = (*limits[d])[1];
+      if (d == 0) c.points.emplace_back();
+      c.points.back()[static_cast<Index>(d)] = lo + (hi - lo) * (v[i] / a.half[d] + 1) / 2;
+    }
+    c.points.push_back(Vec3::Constant(std::nan("")));
+    begin = end + 1;
+  }
+  c.points.pop_back();
   return c;
 }
 
@@ -119,11 +153,18 @@ inline std::vector<DrawnAxes> drawn(const std::filesystem::path& file) {
     a.box = numbers_in(attribute(tag, "data-box"));
     a.x = numbers_in(attribute(tag, "data-x"));
     a.y = numbers_in(attribute(tag, "data-y"));
+    a.z = numbers_in(attribute(tag, "data-z"));
+    a.half = numbers_in(attribute(tag, "data-half"));
     a.zero_at = std::strtod(attribute(tag, "data-zero").c_str(), nullptr);
     a.clockwise = attribute(tag, "data-cw") == "1";
     for (std::size_t p = part.find("<path data-s="); p != std::string::npos;
-         p = part.find("<path data-s=", p + 1))
-      a.curves.push_back(curve_of(part.substr(p, part.find('>', p) - p)));
+         p = part.find("<path data-s=", p + 1)) {
+      const std::string path = part.substr(p, part.find('>', p) - p);
+      if (a.kind == "space")
+        a.space.push_back(space_curve_of(path, a));
+      else
+        a.curves.push_back(curve_of(path));
+    }
     out.push_back(a);
     at = next;
   }

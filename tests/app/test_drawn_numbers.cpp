@@ -1,7 +1,7 @@
 // Curves of figures, read back from their files, against the tables of the same run (which
 // test_written_numbers.cpp holds against closed forms), with titles and units, and that no picture is
 // missing: of a transient, static steps, campbell, stability, critical_map and the two responses.
-// Shapes, space curves and the replay are not read here.
+// Shapes have test_drawn_shapes.cpp; space curves and the replay are not read here.
 #include "deck_run.hpp"
 #include "drawn.hpp"
 #include "lateral_mass.hpp"
