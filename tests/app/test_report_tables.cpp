@@ -1,6 +1,7 @@
 // Tables of the report, read back from the page: those that are files too against their files, the
 // others against closed forms.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 #include "written_decks.hpp"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <tuple>
 
 namespace {
 
@@ -288,4 +290,95 @@ TEST(ReportTables, AreThoseOfTheFilesOrOfClosedForms) {
   }
   EXPECT_GT(compared, 15u);
   EXPECT_EQ(read, std::size(shown));
+}
+
+namespace {
+
+/// 1 kg mm on 10 kg, a stop that is not reached; modes of one motion each, about the rotor at rest
+/// and about it as drawn.
+const char* const three_steps = R"([[bearing]]
+name = "spring"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "600 N.s/m"
+czz = "600 N.s/m"
+krxx = "1e4 N.m/rad"
+[[bearing]]
+name = "stop"
+at = "mass"
+type = "rub"
+gap = "2 mm"
+stiffness = "5e6 N/m"
+[[probe]]
+name = "P"
+at = "mass"
+[[unbalance]]
+at = "mass"
+amount = "1 kg.mm"
+[[step]]
+name = "u"
+type = "unbalance_response"
+about = "undeformed"
+speed = { values = ["2000 rpm", "3000 rpm"], refine = "no" }
+[[step]]
+name = "m"
+type = "modal"
+motion = "torsional"
+modes = 1
+[[step]]
+name = "n"
+type = "modal"
+motion = "lateral"
+about = "undeformed"
+modes = 2
+[output]
+report = true
+)";
+
+/// From a heading of the page to the next.
+std::string section_of(const std::string& page, const std::string& heading) {
+  const std::size_t at = page.find("<h2>" + heading);
+  return at == std::string::npos ? "" : page.substr(at, page.find("</section>", at) - at);
+}
+
+}  // namespace
+
+TEST(ReportTables, SayWhatTheyAreAbout) {
+  const DeckRun run(test::lateral_mass(10, "0 m/s^2", three_steps));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const std::string page = text_of(run.folder / "r" / "report.html");
+  struct Step {
+    const char* heading;
+    const char* about;
+    const char* motion;
+  };
+  const char *lateral = "Lateral motion:", *torsional = "Torsional motion:";
+  for (const Step& s : {Step{"u: unbalance response", "about the undeformed rotor", ""},
+                        {"m: whirl modes", "about the static equilibrium at 0 rpm", torsional},
+                        {"n: whirl modes", "about the undeformed rotor", lateral}}) {
+    const std::string section = section_of(page, s.heading);
+    EXPECT_NE(section.find(std::string("Linearised ") + s.about + "."), std::string::npos)
+        << s.heading;
+    for (const char* motion : {lateral, torsional})
+      EXPECT_EQ(section.find(motion) != std::string::npos, std::string(motion) == s.motion)
+          << s.heading;
+    for (const std::string& caption : parts(section, "<caption", "</caption>"))
+      EXPECT_TRUE(caption.starts_with("Clearances") ||
+                  caption.ends_with(std::string(", ") + s.about))
+          << caption;
+    // the page's list of contents leads to each
+    EXPECT_NE(page.find(std::string(">") + s.heading + "</a>"), std::string::npos) << s.heading;
+  }
+  // m_u w^2/|k - m w^2 + i c w| at 3000 rpm: 522.35 um
+  const std::vector<PageTable> all = tables_of(run);
+  for (const auto& [column, unit, text] : {std::tuple{"at", "-", "stop"},
+                                           {"position", "mm", "100"},
+                                           {"gap", "mm", "2"},
+                                           {"largest displacement", "µm", "522.35"},
+                                           {"of the gap", "%", "26.118"},
+                                           {"when", "-", "at 3000 rpm"}})
+    expect_shown(all, {"three steps", "Clearances: u, response to unbalance", 0, column, unit, text,
+                       "closed form"});
 }
