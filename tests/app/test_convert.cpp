@@ -72,6 +72,63 @@ TEST(Convert, RossExampleHasItsPublishedFrequencies) {
   EXPECT_NEAR(2 * std::numbers::pi * modes.rows[1][frequency], 96.28899977, 2e-4);
 }
 
+// A hollow cone of a material without G_s and a cylinder of another; ROSS's x and y are y and z here.
+TEST(Convert, EveryNumberOfARossRotorArrives) {
+  const std::string json = R"({"ross_version": "2.3.0", "parameters": {"rated_w": null},
+"ShaftElement_s 0": {"L": 0.3, "idl": 0.01, "odl": 0.06, "idr": 0.02, "odr": 0.04, "n": 0,
+  "material": {"name": "Bronze", "rho": 8800.0, "E": 1.1e11, "Poisson": 0.375}},
+"ShaftElement_s 1": {"L": 0.2, "idl": 0.0, "odl": 0.05, "idr": 0.0, "odr": 0.05, "n": 1,
+  "material": {"name": "Steel", "rho": 7810.0, "E": 2.11e11, "G_s": 8.12e10}},
+"DiskElement_d": {"n": 1, "m": 12.0, "Id": 0.07, "Ip": 0.11, "tag": "wheel"},
+"BearingElement_b": {"n": 0, "n_link": null, "frequency": null, "kxx": [1e6], "kyy": [2e6],
+  "kxy": [3e5], "kyx": [-4e5], "cxx": [10.0], "cyy": [20.0], "cxy": [3.0], "cyx": [-4.0],
+  "tag": "left"},
+"BearingElement_c": {"n": 2, "n_link": null, "frequency": null, "kxx": [5e6], "cxx": [50.0],
+  "tag": "right"}})";
+  const Converted c = convert::convert_ross_json(json, "rotor.json");
+  const auto deck = deck::read_deck_text(c.text, "d.toml");
+  ASSERT_TRUE(deck.ok()) << deck.report() << c.text;
+  const model::Model& m = deck.model;
+  ASSERT_EQ(m.shafts.size(), 1u);
+  ASSERT_EQ(m.shafts[0].sections.size(), 2u);
+  const model::Section &cone = m.shafts[0].sections[0], &rod = m.shafts[0].sections[1];
+  EXPECT_NEAR(cone.length, 0.3, 1e-12);
+  EXPECT_NEAR(cone.od_l, 0.06, 1e-12);
+  EXPECT_NEAR(cone.od_r, 0.04, 1e-12);
+  EXPECT_NEAR(cone.id_l, 0.01, 1e-12);
+  EXPECT_NEAR(cone.id_r, 0.02, 1e-12);
+  EXPECT_NEAR(rod.length, 0.2, 1e-12);
+  EXPECT_NEAR(rod.od_l, 0.05, 1e-12);
+  EXPECT_NEAR(rod.id_r, 0, 1e-12);
+  const model::Material &bronze = m.materials.at(cone.material),
+                        &steel = m.materials.at(rod.material);
+  EXPECT_NEAR(bronze.E, 1.1e11, 1);
+  EXPECT_NEAR(bronze.rho, 8800, 1e-9);
+  EXPECT_NEAR(bronze.G, 1.1e11 / 2.75, 1e3);  // E/(2 (1 + nu))
+  EXPECT_NEAR(steel.E, 2.11e11, 1);
+  EXPECT_NEAR(steel.G, 8.12e10, 1e3);
+  EXPECT_NEAR(steel.rho, 7810, 1e-9);
+  ASSERT_EQ(m.disks.size(), 1u);
+  EXPECT_NEAR(m.disks[0].at.s, 0.3, 1e-12);
+  EXPECT_NEAR(m.disks[0].mass, 12, 1e-12);
+  EXPECT_NEAR(m.disks[0].Id, 0.07, 1e-12);
+  EXPECT_NEAR(m.disks[0].Ip, 0.11, 1e-12);
+  std::size_t found = 0;
+  for (const model::Bearing& b : m.bearings) {
+    const auto* linear = std::get_if<model::LinearBearing>(&b.law);
+    if (!linear || b.name.find("thrust") != std::string::npos) continue;
+    ++found;
+    const bool left = b.at.s < 0.1;
+    EXPECT_NEAR(b.at.s, left ? 0 : 0.5, 1e-12);
+    const auto block = [](const Matrix<6>& x) { return Mat2(x.block<2, 2>(1, 1)); };
+    const Mat2 K = left ? Mat2{{1e6, 3e5}, {-4e5, 2e6}} : Mat2{{5e6, 0}, {0, 5e6}},
+               C = left ? Mat2{{10, 3}, {-4, 20}} : Mat2{{50, 0}, {0, 50}};
+    EXPECT_NEAR((block(linear->K) - K).norm(), 0, 1e-6) << b.name;
+    EXPECT_NEAR((block(linear->C) - C).norm(), 0, 1e-9) << b.name;
+  }
+  EXPECT_EQ(found, 2u) << c.text;
+}
+
 // Its tables of letters know nothing of some that may stand in quotes alone.
 TEST(Convert, TomlThatNoLibraryMayReadIsRefused) {
   for (const std::string text : {"length \u00b7m = 1\n", "\u00e9 = 1\n", "a = \x01\n"})
