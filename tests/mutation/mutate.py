@@ -213,8 +213,8 @@ def build(work, options):
             break
         bad = faulty_lines(done.stdout, work)
         drop = [k for k, s in chosen.items() if (s.file, s.line) in bad]
-        if not drop:  # a statement may begin on an earlier line
-            drop = [k for k, s in chosen.items() if any(f == s.file and 0 <= n - s.line <= 4 for f, n in bad)]
+        if not drop:  # a statement has several lines, and the compiler names one of them
+            drop = [k for k, s in chosen.items() if any(f == s.file and abs(n - s.line) <= 4 for f, n in bad)]
         if not drop:
             sys.exit(f"the build fails for another reason: {work.folder}/build.log")
         print(f"{len(drop)} sites do not compile", flush=True)
