@@ -107,6 +107,11 @@ TEST(Reports, LateralNumbersAreThoseOfAMassOnSprings) {
   expect(rows[2], "close clearances", 100 * scale * 2 * response(peak) / 0.3e-3, 75, "passed");
   expect(rows[3], "level 1: log decrement", log_decrement(anticipated), 0.1, "passed");
   expect(rows[4], "level 1: Q0/QA", c * std::sqrt(k / m) / anticipated, 2, "passed");
+  const io::Value parts = d.summary("l").at("parts"), told = parts.at("l_level_1");
+  EXPECT_NEAR(parts.at("l_mode_1").at("scale factor").number(), scale, 1e-6 * scale);
+  EXPECT_NEAR(told.at("anticipated cross-coupling QA [N/m]").number(), anticipated, 1e-6);
+  EXPECT_NEAR(told.at("cross-coupling at the onset Q0 [N/m]").number(), c * std::sqrt(k / m), 0.1);
+  EXPECT_NEAR(told.at("mean density [kg/m^3]").number(), (1 + 1.14) / 2, 1e-12);
   EXPECT_TRUE(d.says("5 checks")) << d.log;
   EXPECT_TRUE(d.says("close clearances")) << d.log;
 }
@@ -435,6 +440,8 @@ amplitude = "100 N.m"
               75 / (1 - std::pow(0.5 * 1100 / 60 / natural, 2)), 1e-4);
   EXPECT_NEAR(row.at("speed [rpm]"), 1100, 1e-6);
   EXPECT_NEAR(d.csv("t_train.csv").last().at("inertia [kg m2]"), 4, 1e-6);
+  const io::Value told = d.summary("t").at("frequencies [Hz]");
+  EXPECT_NEAR(told.items().at(told.items().size() - 1).number(), natural, 1e-6 * natural);
 }
 
 TEST(Reports, AResonanceWithoutDampingIsSaid) {
@@ -493,6 +500,9 @@ balance_grade = "G1"
   EXPECT_NEAR(w.at("correction [g mm]"), 30, 1e-7);
   EXPECT_NEAR(w.at("angle [deg]"), 220, 1e-6);
   EXPECT_NEAR(w.at("place [m]"), 0.1, 1e-12);
+  const io::Value told = d.summary("b").at("corrections").at("disc");
+  EXPECT_NEAR(told.at("amount [g mm]").number(), 30, 1e-7);
+  EXPECT_NEAR(told.at("angle [deg]").number(), 220, 1e-6);
   const auto left = d.csv("b_residuals.csv");
   const double w2 = rad(2000);
   const double amplitude = 30e-6 * w2 * w2 / std::abs(Complex(k - m * w2 * w2, c * w2));
