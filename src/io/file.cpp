@@ -101,6 +101,15 @@ void make_parent(const fs::path& file) {
   if (ec) io_failure(file.parent_path(), "cannot make the folder", ec.value());
 }
 
+// Nearly always the folder is there: asked for only when the file cannot be made. -1: see errno.
+int open_new(const fs::path& file) {
+  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+  const int fd = ::open(file.c_str(), flags, 0666);
+  if (fd >= 0 || (errno != ENOENT && errno != ENOTDIR)) return fd;
+  make_parent(file);
+  return ::open(file.c_str(), flags, 0666);
+}
+
 // Returns 0 or errno.
 int write_all(int fd, const char* p, std::size_t n) {
   while (n > 0) {
@@ -128,9 +137,8 @@ int wait_for_disk(int fd) {
 void set_waiting_for_disk(bool wait) { waits_for_disk = wait; }
 
 void write_atomic(const fs::path& file, std::string_view content) {
-  make_parent(file);
   const fs::path tmp = temporary_beside(file);
-  const int fd = ::open(tmp.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int fd = open_new(tmp);
   if (fd < 0) io_failure(file, "cannot write", errno);
   int e = write_all(fd, content.data(), content.size());
   // a power cut after the rename must not leave a file of that name without its content
@@ -177,10 +185,9 @@ AppendFile::~AppendFile() {
 
 void AppendFile::create(const fs::path& file, std::string_view head) {
   close();
-  make_parent(file);
   path_ = file;
   const fs::path tmp = temporary_beside(file);
-  fd_ = ::open(tmp.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  fd_ = open_new(tmp);
   if (fd_ < 0) io_failure(file, "cannot write", errno);
   if (const int e = write_all(fd_, head.data(), head.size())) {
     ::close(std::exchange(fd_, -1));

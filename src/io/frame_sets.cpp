@@ -43,7 +43,7 @@ class LineSet final : public FrameSet {
   void update(const FramePoses& f) override {
     const std::size_t n = places_.size();
     auto& arrays = data_.point_data;
-    arrays.resize(7);
+    taken_ = 7;
     for (std::size_t i = 0; i < n; ++i) {
       const auto& p = places_[i];
       const Mat3& triad =
@@ -66,6 +66,7 @@ class LineSet final : public FrameSet {
     add_sections("force [N]", f.state->force);
     add_sections("moment [N m]", f.state->moment);
     add_sections("von_mises [Pa]", f.state->stress);
+    arrays.resize(taken_);
   }
 
  private:
@@ -158,21 +159,30 @@ class LineSet final : public FrameSet {
   void put_array(const char* name, std::span<const T> values, ValueAt value_at) {
     if (values.empty()) return;
     constexpr bool vector = std::is_same_v<T, Vec3>;
-    auto a = array(name, vector ? 3 : 1, places_.size());
+    std::vector<float>& to = next_array(name, vector ? 3 : 1).floats();
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const T v = value_at(i);
       if constexpr (vector)
-        put(a.floats(), i, v);
+        put(to, i, v);
       else
-        a.floats()[i] = static_cast<float>(v);
+        to[i] = static_cast<float>(v);
     }
-    data_.point_data.push_back(std::move(a));
+  }
+  /// That of the last frame, where it had one of this name in this place.
+  PolyData::Array& next_array(const char* name, int components) {
+    auto& arrays = data_.point_data;
+    const std::size_t k = taken_++;
+    if (k < arrays.size() && arrays[k].name == name) return arrays[k];
+    arrays.resize(k);
+    arrays.push_back(array(name, components, places_.size()));
+    return arrays.back();
   }
 
   Scene scene_;
   std::vector<meshes::Spot> places_;
   std::vector<Ends> ends_;  ///< of each place
   std::vector<float> radius_;
+  std::size_t taken_ = 0;  ///< arrays of this frame so far
 };
 
 class SurfaceSet final : public FrameSet {
@@ -208,6 +218,7 @@ class SurfaceSet final : public FrameSet {
 class SupportSet final : public FrameSet {
  public:
   explicit SupportSet(const Scene& scene) : scene_(scene) {
+    make_tables();
     for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
       const auto& s = scene_.supports[k];
       const std::int64_t vertex = grow(1);
@@ -285,6 +296,26 @@ class SupportSet final : public FrameSet {
 
  private:
   static constexpr std::size_t ring_points = 48, spring_points = 97, turns = 6;
+  struct Ring {
+    double cos, sin;
+  };
+  /// Of a point of a spring: the share of its length before it, of its radius, and where around it.
+  struct Coil {
+    double x, swell, cos, sin;
+  };
+
+  void make_tables() {
+    for (std::size_t k = 0; k <= ring_points; ++k) {
+      const double a = two_pi * static_cast<double>(k) / ring_points;
+      ring_.push_back({std::cos(a), std::sin(a)});
+    }
+    for (std::size_t k = 0; k < spring_points; ++k) {
+      const double x = static_cast<double>(k) / (spring_points - 1);
+      const double coil = std::clamp((x - 0.12) / 0.76, 0.0, 1.0), angle = two_pi * turns * coil;
+      const double swell = std::min({1.0, 12 * coil, 12 * (1 - coil)});
+      coil_.push_back({x, swell, std::cos(angle), std::sin(angle)});
+    }
+  }
 
   void name_cells() {
     PolyData::Names supports{"support names", {}}, joints{"joint names", {}};
@@ -333,10 +364,8 @@ class SupportSet final : public FrameSet {
     return longest > 0 ? longest / 50 : 1.0;
   }
   void circle(const Vec3& centre, const Mat3& axes, double r, std::size_t& i) {
-    for (std::size_t k = 0; k <= ring_points; ++k) {
-      const double a = two_pi * static_cast<double>(k) / ring_points;
-      put(data_.points, i++, centre + r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)));
-    }
+    for (const Ring& at : ring_)
+      put(data_.points, i++, centre + r * (at.cos * axes.col(1) + at.sin * axes.col(2)));
   }
   // A spring from a to b: straight ends, `turns` coils between.
   void helix(const Vec3& a, const Vec3& b, const Vec3& side, double r, std::size_t& i) {
@@ -344,17 +373,16 @@ class SupportSet final : public FrameSet {
     Vec3 n1 = axis.cross(side);
     const double l = std::sqrt(n1.squaredNorm());
     n1 = l > 0 ? Vec3(n1 / l) : Vec3(Vec3::Zero());
-    for (std::size_t k = 0; k < spring_points; ++k) {
-      const double x = static_cast<double>(k) / (spring_points - 1);
-      const double coil = std::clamp((x - 0.12) / 0.76, 0.0, 1.0), angle = two_pi * turns * coil;
-      const double swell = r * std::min({1.0, 12 * coil, 12 * (1 - coil)});
-      put(data_.points, i++,
-          a + x * axis + swell * (std::cos(angle) * n1 + std::sin(angle) * side));
+    for (const Coil& at : coil_) {
+      const double swell = r * at.swell;
+      put(data_.points, i++, a + at.x * axis + swell * (at.cos * n1 + at.sin * side));
     }
   }
 
   Scene scene_;
   std::size_t count_ = 0;
+  std::vector<Ring> ring_;
+  std::vector<Coil> coil_;
 };
 
 class TrailSet final : public FrameSet {

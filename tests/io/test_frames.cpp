@@ -5,7 +5,9 @@
 #include <core/plugin.hpp>
 #include <io/file.hpp>
 #include <io/frames.hpp>
+#include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -68,7 +70,7 @@ class Frames : public ::testing::Test {
   void SetUp() override {
     if (!Plugin::available("vtk")) GTEST_SKIP() << "built without VTK";
   }
-  void write(FrameWriter& w, const Scene& scene, double t) {
+  void write(FrameWriter& w, const Scene& scene, double t, bool stressed = true) {
     const auto p = poses_at(scene, t);
     const std::vector<Vec3> v(3, Vec3(0, 1, 2)), f(2, Vec3(0, 0, 500));
     FrameState s;
@@ -77,7 +79,7 @@ class Frames : public ::testing::Test {
     s.nodes = p;
     s.velocity = v;
     s.support_force = f;
-    s.stress = stress;
+    if (stressed) s.stress = stress;
     w.frame(s);
   }
   TempFolder dir_;
@@ -121,6 +123,32 @@ TEST_F(Frames, EveryMomentLeavesAnOpenableCollection) {
     const std::string text = read_text(dir_ / "frames_surface.pvd");
     EXPECT_NE(text.find("</VTKFile>"), std::string::npos);
     EXPECT_EQ(read_pvd(dir_ / "frames_surface.pvd").size(), static_cast<std::size_t>(k + 1));
+  }
+}
+
+// Objects and arrays stay from frame to frame: nothing of an earlier one may be seen in a later one.
+TEST_F(Frames, AFrameHoldsNothingOfThoseBefore) {
+  const Scene scene = small_rotor();
+  VtkFrameOptions o;
+  o.directory = dir_.path();
+  o.bearings = true;
+  o.name = "many";
+  const auto many = make_vtk_frames(o);
+  many->begin(scene);
+  constexpr std::array times{0.1, 0.2, 0.3};
+  write(*many, scene, times[0]);
+  write(*many, scene, times[1], false);
+  write(*many, scene, times[2]);
+  o.name = "alone";
+  const auto text_of = [&](const char* name, const char* set, int k) {
+    return read_text(dir_ / fmt::format("{}_{}/frame_{:06}.vtp", name, set, k));
+  };
+  for (int k = 0; k < 3; ++k) {
+    const auto alone = make_vtk_frames(o);
+    alone->begin(scene);
+    write(*alone, scene, times[static_cast<std::size_t>(k)], k != 1);
+    for (const char* set : {"line", "surface", "bearings"})
+      EXPECT_TRUE(text_of("many", set, k) == text_of("alone", set, 0)) << set << k;
   }
 }
 

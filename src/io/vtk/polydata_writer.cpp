@@ -19,32 +19,46 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <algorithm>
 #include <optional>
 
 namespace whirl::io {
 namespace {
 
-// The arrays are lent to VTK, not copied: they live until the file is written.
+// The arrays are lent to VTK, not copied: they live until the file is written. They may be others at
+// every frame; the objects of VTK around them stay.
 template <class VtkArray, class T>
-vtkSmartPointer<vtkDataArray> lend(const std::vector<T>& v, int components, const char* name) {
-  auto a = vtkSmartPointer<VtkArray>::New();
-  a->SetName(name);
-  a->SetNumberOfComponents(components);
-  a->SetArray(const_cast<T*>(v.data()), static_cast<vtkIdType>(v.size()), 1);
-  return a;
+void lend(const std::vector<T>& v, vtkDataArray& to) {
+  static_cast<VtkArray&>(to).SetArray(const_cast<T*>(v.data()), static_cast<vtkIdType>(v.size()),
+                                      1);
+  to.Modified();  // or the range in the file stays that of the first frame
 }
 
-vtkSmartPointer<vtkDataArray> lend(const PolyData::Array& a) {
-  struct Visitor {
-    const PolyData::Array& a;
-    vtkSmartPointer<vtkDataArray> operator()(const std::vector<float>& v) const {
-      return lend<vtkFloatArray>(v, a.components, a.name.c_str());
-    }
-    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::int32_t>& v) const {
-      return lend<vtkIntArray>(v, a.components, a.name.c_str());
-    }
-  };
-  return std::visit(Visitor{a}, a.values);
+void lend(const PolyData::Array& a, vtkDataArray& to) {
+  if (const auto* floats = std::get_if<std::vector<float>>(&a.values))
+    lend<vtkFloatArray>(*floats, to);
+  else
+    lend<vtkIntArray>(std::get<std::vector<std::int32_t>>(a.values), to);
+}
+
+vtkSmartPointer<vtkDataArray> array_for(const PolyData::Array& a) {
+  vtkSmartPointer<vtkDataArray> made;
+  if (std::holds_alternative<std::vector<float>>(a.values))
+    made = vtkSmartPointer<vtkFloatArray>::New();
+  else
+    made = vtkSmartPointer<vtkIntArray>::New();
+  made->SetName(a.name.c_str());
+  made->SetNumberOfComponents(a.components);
+  return made;
+}
+
+/// Whether the arrays of a frame are those that `made` was made for.
+bool fit(const std::vector<PolyData::Array>& arrays,
+         const std::vector<vtkSmartPointer<vtkDataArray>>& made) {
+  return std::equal(arrays.begin(), arrays.end(), made.begin(), made.end(),
+                    [](const PolyData::Array& a, const vtkSmartPointer<vtkDataArray>& m) {
+                      return a.name == m->GetName() && a.components == m->GetNumberOfComponents();
+                    });
 }
 
 vtkSmartPointer<vtkCellArray> copy(const PolyData::Cells& c) {
@@ -83,42 +97,28 @@ class Writer final : public PolyDataWriter {
     writer_->SetCompressorTypeToLZ4();  // a third of the time of zlib, for 1.7 times the size
     time_->SetName("TimeValue");
     time_->SetNumberOfValues(1);
+    points_->SetData(vtkSmartPointer<vtkFloatArray>::New());
+    points_->GetData()->SetNumberOfComponents(3);
+    points_->GetData()->SetName("Points");
+    writer_->SetInputData(poly_);
   }
 
   void write(const std::filesystem::path& file, const PolyData& data, double time) override {
-    if (topology_ != data.topology) {
-      vertices_ = copy(data.vertices);
-      lines_ = copy(data.lines);
-      polygons_ = copy(data.polygons);
-      names_.clear();
-      for (const PolyData::Names& n : data.names)
-        names_.push_back(copy(n));
-      topology_ = data.topology;
-    }
-    vtkNew<vtkPolyData> poly;
-    vtkNew<vtkPoints> points;
-    points->SetData(lend<vtkFloatArray>(data.points, 3, "Points"));
-    poly->SetPoints(points);
-    if (data.vertices.size()) poly->SetVerts(vertices_);
-    if (data.lines.size()) poly->SetLines(lines_);
-    if (data.polygons.size()) poly->SetPolys(polygons_);
-    for (const auto& a : data.point_data) {
-      if (a.name == data.normals)
-        poly->GetPointData()->SetNormals(lend(a));
-      else
-        poly->GetPointData()->AddArray(lend(a));
-    }
-    for (const auto& a : data.cell_data)
-      poly->GetCellData()->AddArray(lend(a));
+    if (topology_ != data.topology) take_cells(data);
+    if (!fit(data.point_data, point_arrays_) || !fit(data.cell_data, cell_arrays_))
+      make_arrays(data);
+    lend<vtkFloatArray>(data.points, *points_->GetData());
+    points_->Modified();
+    for (std::size_t k = 0; k < point_arrays_.size(); ++k)
+      lend(data.point_data[k], *point_arrays_[k]);
+    for (std::size_t k = 0; k < cell_arrays_.size(); ++k)
+      lend(data.cell_data[k],
+           *cell_arrays_[k]);  // a range that is known takes another form in the file
     time_->SetValue(0, time);
-    time_->Modified();  // or the range in the file stays that of the first frame
-    poly->GetFieldData()->AddArray(time_);
-    for (const auto& n : names_)
-      poly->GetFieldData()->AddArray(n);
-    writer_->SetInputData(poly);
+    time_->Modified();
+    poly_->Modified();
     const bool ok = writer_->Write() == 1 && writer_->GetErrorCode() == vtkErrorCode::NoError;
     const auto code = writer_->GetErrorCode();
-    writer_->SetInputData(nullptr);
     if (!ok)
       io_failure(file, std::string("VTK cannot write (") +
                            vtkErrorCode::GetStringFromErrorCode(code) + ")");
@@ -128,10 +128,44 @@ class Writer final : public PolyDataWriter {
   }
 
  private:
+  /// What changes with the cells alone.
+  void take_cells(const PolyData& data) {
+    poly_->Initialize();
+    poly_->SetPoints(points_);
+    if (data.vertices.size()) poly_->SetVerts(copy(data.vertices));
+    if (data.lines.size()) poly_->SetLines(copy(data.lines));
+    if (data.polygons.size()) poly_->SetPolys(copy(data.polygons));
+    poly_->GetFieldData()->AddArray(time_);
+    for (const PolyData::Names& n : data.names)
+      poly_->GetFieldData()->AddArray(copy(n));
+    make_arrays(data);
+    topology_ = data.topology;
+  }
+
+  void make_arrays(const PolyData& data) {
+    poly_->GetPointData()->Initialize();
+    poly_->GetCellData()->Initialize();
+    point_arrays_.clear();
+    cell_arrays_.clear();
+    for (const PolyData::Array& a : data.point_data) {
+      point_arrays_.push_back(array_for(a));
+      if (a.name == data.normals)
+        poly_->GetPointData()->SetNormals(point_arrays_.back());
+      else
+        poly_->GetPointData()->AddArray(point_arrays_.back());
+    }
+    for (const PolyData::Array& a : data.cell_data) {
+      cell_arrays_.push_back(array_for(a));
+      poly_->GetCellData()->AddArray(cell_arrays_.back());
+    }
+  }
+
+ private:
   vtkNew<vtkXMLPolyDataWriter> writer_;
   vtkNew<vtkDoubleArray> time_;
-  vtkSmartPointer<vtkCellArray> vertices_, lines_, polygons_;
-  std::vector<vtkSmartPointer<vtkStringArray>> names_;
+  vtkNew<vtkPolyData> poly_;
+  vtkNew<vtkPoints> points_;
+  std::vector<vtkSmartPointer<vtkDataArray>> point_arrays_, cell_arrays_;
   std::optional<std::uint64_t> topology_;
 };
 
