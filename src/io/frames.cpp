@@ -288,12 +288,14 @@ class VtkFrames final : public FrameWriter {
   std::unique_ptr<SetFiles> make_files(const std::string& stem, InArchive* earlier) const {
     if (!options_.one_file)
       return std::make_unique<SeparateFiles>(
-          options_, stem, plugin_.function<VtkMakeWriter>(vtk_make_writer)(), earlier);
+          options_, stem, plugin_.function<VtkMakeWriter>(vtk_make_writer)(options_.compression),
+          earlier);
     std::error_code ec;
     fs::create_directories(options_.directory, ec);
     if (ec) io_failure(options_.directory, "cannot make the folder", ec.value());
     return std::make_unique<OneFile>(plugin_.function<Hdf5MakePolyData>(hdf5_make_polydata)(
-        options_.directory / (stem + ".vtkhdf"), earlier));
+        options_.directory / (stem + ".vtkhdf"), options_.compression != Compression::none,
+        earlier));
   }
   void open(const Scene& scene, InArchive* earlier) {
     sets_.clear();

@@ -3,6 +3,7 @@
 // shall stand in one file.
 #pragma once
 #include <core/archive.hpp>
+#include <core/compression.hpp>
 #include <core/types.hpp>
 #include <meshes/surface.hpp>
 #include <cstdint>
@@ -58,6 +59,7 @@ struct VtkFrameOptions {
   double deformation_scale = 1.0;  ///< magnifies displacement and tilt, not the spin
   int points_around = 32;
   bool one_file = false;  ///< all frames of a set in `<name>_<set>.vtkhdf`, by the HDF5 plug-in
+  Compression compression = Compression::lz4;  ///< in one file none, else zlib
   std::uint64_t max_frames =
       5000;  ///< beyond it every other frame is removed and the stride doubles
   std::size_t trail_points = 2000;  ///< longest orbit trail, frames

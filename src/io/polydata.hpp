@@ -1,6 +1,7 @@
 // One picture frame as plain arrays, and the interface of what writes it to a file.
 #pragma once
 #include <core/archive.hpp>
+#include <core/compression.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -69,7 +70,7 @@ class PolyDataSeries {
 };
 
 /// Entry point of the VTK plug-in.
-using VtkMakeWriter = PolyDataWriter*();
+using VtkMakeWriter = PolyDataWriter*(Compression);
 inline constexpr const char* vtk_make_writer = "whirl_vtk_make_writer";
 
 }  // namespace whirl::io

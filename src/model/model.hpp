@@ -2,6 +2,7 @@
 // deck reader, then const. No matrices, no mesh, no numbering. Every entity keeps where in the deck
 // it stands.
 #pragma once
+#include <core/compression.hpp>
 #include <core/error.hpp>
 #include <core/law.hpp>
 #include <core/path.hpp>
@@ -604,6 +605,7 @@ struct VtkOutput {
   double deformation_scale = 1;
   int points_around = 32;
   bool one_file = false;  ///< all frames of a set in one VTKHDF file
+  Compression compression = Compression::lz4;
   Where where;
 };
 

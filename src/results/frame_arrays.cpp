@@ -4,6 +4,20 @@
 
 namespace whirl::results {
 
+io::VtkFrameOptions frame_options(const run::Job& job, const model::VtkOutput& asked,
+                                  const std::string& name) {
+  io::VtkFrameOptions options;
+  options.directory = job.folder.subfolder("vtk");
+  options.name = name;
+  io::set_content(options, asked.content);
+  options.deformation_scale = asked.deformation_scale;
+  options.points_around = asked.points_around;
+  options.one_file = asked.one_file;
+  options.compression = asked.compression;
+  options.max_frames = static_cast<std::uint64_t>(asked.max_frames);
+  return options;
+}
+
 FrameArrays::FrameArrays(const run::Job& job)
     : job_(job),
       poses_(job.mesh.nodes.size()),

@@ -1,10 +1,15 @@
 // What a frame of the rotor shows beside its place: velocities, section forces, stresses, support
-// forces, at one state.
+// forces, at one state; and how frames are written.
 #pragma once
 #include <run/job.hpp>
 #include <assembly/section_results.hpp>
 
 namespace whirl::results {
+
+/// How frames of a step are written that a table of the deck asks for: into the results folder, under
+/// this name.
+io::VtkFrameOptions frame_options(const run::Job& job, const model::VtkOutput& asked,
+                                  const std::string& name);
 
 class FrameArrays {
  public:

@@ -40,14 +40,7 @@ Frames::Frames(const run::Job& job, const model::VtkOutput& o, const std::string
     : job_(job),
       schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1),
       arrays_(job) {
-  io::VtkFrameOptions options;
-  options.directory = job.folder.subfolder("vtk");
-  options.name = name;
-  io::set_content(options, o.content);
-  options.deformation_scale = o.deformation_scale;
-  options.points_around = o.points_around;
-  options.one_file = o.one_file;
-  options.max_frames = static_cast<std::uint64_t>(o.max_frames);
+  const io::VtkFrameOptions options = frame_options(job, o, name);
   writer_ = io::make_vtk_frames(options);
   line_ = options.line;
   bearings_ = options.bearings;

@@ -1,4 +1,5 @@
 // Mode shapes and operating shapes as figures and as frames for ParaView.
+#include <results/frame_arrays.hpp>
 #include <results/frequency.hpp>
 
 #include <core/rotation.hpp>
@@ -196,13 +197,9 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
   const model::Output& out = s.job.model.output;
   for (const model::VtkOutput& v : out.vtk) {
     if (!v.step.empty() && v.step != s.step.name) continue;
-    io::VtkFrameOptions options;
-    options.directory = s.job.folder.subfolder("vtk");
-    options.name = s.file(name);
-    io::set_content(options, v.content);
+    io::VtkFrameOptions options = frame_options(s.job, v, s.file(name));
     options.deformation_scale = 1.0;  // in the amplitude
-    options.points_around = v.points_around;
-    options.one_file = v.one_file;
+    options.max_frames = model::VtkOutput::frames_of_a_shape;
     const Index nodes = static_cast<Index>(s.job.mesh.nodes.size());
     io::HarmonicShape shape;
     double largest = 0, length = 0;

@@ -6,15 +6,7 @@ namespace whirl::results {
 StaticFrames::StaticFrames(const run::Job& job, const std::string& step) {
   for (const model::VtkOutput& o : job.model.output.vtk) {
     if (!o.step.empty() && o.step != step) continue;
-    io::VtkFrameOptions options;
-    options.directory = job.folder.subfolder("vtk");
-    options.name = step;
-    io::set_content(options, o.content);
-    options.deformation_scale = o.deformation_scale;
-    options.points_around = o.points_around;
-    options.one_file = o.one_file;
-    options.max_frames = static_cast<std::uint64_t>(o.max_frames);
-    writers_.push_back(io::make_vtk_frames(options));
+    writers_.push_back(io::make_vtk_frames(frame_options(job, o, step)));
     writers_.back()->begin(job.scene);
   }
 }

@@ -391,7 +391,8 @@ class ModelDump {
       out_ += "\nvtk ";
       put("step", v.step);
       each("", std::array{v.t0, v.t1, v.every, v.frames_per_revolution, double(v.frames),
-                          double(v.max_frames), v.deformation_scale, double(v.points_around)});
+                          double(v.max_frames), v.deformation_scale, double(v.points_around),
+                          double(v.one_file), double(v.compression)});
       for (const auto& c : v.content)
         put("content", c);
     }

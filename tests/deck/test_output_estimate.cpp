@@ -31,6 +31,29 @@ every = "1 us"
             "output.every\n");
 }
 
+TEST(OutputEstimate, KnowsHowFramesArePacked) {
+  const auto pictures = [](const std::string& how) {
+    const auto d = deck::read_deck_text(R"(format = 1
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 300, 40]]
+[[step]]
+type = "transient"
+start = "rest"
+duration = "1 s"
+[[output.vtk]]
+)" + how);
+    EXPECT_TRUE(d.ok()) << d.report();
+    return deck::estimate_output(d.model).pictures;
+  };
+  const double lz4 = pictures("");
+  EXPECT_EQ(pictures("compression = \"lz4\""), lz4);
+  EXPECT_GT(pictures("compression = \"none\""), 1.3 * lz4);
+  EXPECT_LT(pictures("compression = \"zlib\""), 0.9 * lz4);
+  EXPECT_LT(pictures("format = \"vtkhdf\""), 0.9 * lz4);
+}
+
 TEST(OutputEstimate, FramesAreCapped) {
   const char* text = R"(format = 1
 [shaft]

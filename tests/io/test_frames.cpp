@@ -126,6 +126,29 @@ TEST_F(Frames, EveryMomentLeavesAnOpenableCollection) {
   }
 }
 
+TEST_F(Frames, AreTheSameHoweverTheyArePacked) {
+  const Scene scene = small_rotor();
+  std::vector<std::uintmax_t> sizes;
+  std::string folders;
+  for (const Compression how : {Compression::none, Compression::lz4, Compression::zlib}) {
+    VtkFrameOptions o;
+    o.directory = dir_ / std::to_string(sizes.size());
+    o.bearings = o.orbits = true;
+    o.compression = how;
+    const auto w = make_vtk_frames(o);
+    w->begin(scene);
+    for (int k = 0; k < 3; ++k)
+      write(*w, scene, 0.1 * k);
+    sizes.push_back(fs::file_size(o.directory / "frames_surface/frame_000002.vtp"));
+    folders += " '" + o.directory.string() + "'";
+  }
+  EXPECT_LT(sizes[1], 0.7 * static_cast<double>(sizes[0]));  // lz4
+  EXPECT_LT(sizes[2], 0.9 * static_cast<double>(sizes[1]));  // zlib
+  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python3-vtk9";
+  EXPECT_EQ(std::system(("/usr/bin/python3 same_frames.py" + folders).c_str()), 0);
+}
+
 // Objects and arrays stay from frame to frame: nothing of an earlier one may be seen in a later one.
 TEST_F(Frames, AFrameHoldsNothingOfThoseBefore) {
   const Scene scene = small_rotor();

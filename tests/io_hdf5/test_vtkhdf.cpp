@@ -236,6 +236,22 @@ TEST_F(OneFileFrames, AreReadStepByStep) {
   EXPECT_EQ(surface.size("NumberOfPoints").front(), 1u);
 }
 
+TEST_F(OneFileFrames, AreTheSameHoweverTheyArePacked) {
+  std::vector<std::uintmax_t> sizes;
+  for (const Compression how : {Compression::none, Compression::zlib}) {
+    options_.compression = how;
+    {
+      const auto w = make_vtk_frames(options_);
+      w->begin(scene_);
+      for (const double t : {0.0, 0.1, 0.2})
+        write(*w, t);
+    }
+    expect_frames({0.0, 0.1, 0.2}, {0.0, 0.1, 0.2});
+    sizes.push_back(std::filesystem::file_size(dir_ / "frames_surface.vtkhdf"));
+  }
+  EXPECT_LT(sizes[1], sizes[0]);
+}
+
 TEST_F(OneFileFrames, AreWholeWhileTheRunGoesOn) {
   const auto w = make_vtk_frames(options_);
   w->begin(scene_);

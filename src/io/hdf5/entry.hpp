@@ -6,8 +6,9 @@
 namespace whirl::io {
 
 using Hdf5MakeSeries = TimeSeries*(const std::filesystem::path&, const SeriesOptions&);
-/// earlier: of save(), to go on with the file; null: a new one.
-using Hdf5MakePolyData = PolyDataSeries*(const std::filesystem::path&, InArchive* earlier);
+/// earlier: of save(), to go on with the file as it is packed; null: a new one.
+using Hdf5MakePolyData = PolyDataSeries*(const std::filesystem::path&, bool packed,
+                                         InArchive* earlier);
 using Hdf5Read = void(const std::filesystem::path&, Columns&);
 inline constexpr const char* hdf5_make_series = "whirl_hdf5_make_series";
 inline constexpr const char* hdf5_make_polydata = "whirl_hdf5_make_polydata";

@@ -133,7 +133,7 @@ struct Step {
 
 class Series final : public PolyDataSeries {
  public:
-  Series(const fs::path& path, InArchive* earlier) : path_(path) {
+  Series(const fs::path& path, bool packed, InArchive* earlier) : path_(path), packed_(packed) {
     const std::lock_guard lock(library());
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     if (earlier)
@@ -220,6 +220,7 @@ class Series final : public PolyDataSeries {
   }
 
   fs::path path_;
+  bool packed_;
   Handle file_, root_, steps_;
   std::map<std::string, std::unique_ptr<Rows>> rows_;         ///< by path below the root
   std::vector<std::pair<std::string, std::uint64_t>> names_;  ///< of these, and their columns
@@ -283,7 +284,7 @@ void Series::reopen(InArchive& in) {
 void Series::make_data_sets(const PolyData& data) {
   constexpr hsize_t few = 256;
   // a chunk a frame; frames that grow share theirs, which are then written again and again: not packed
-  const bool grows = data.topology > 0;
+  const bool grows = data.topology > 0, packed = packed_ && !grows;
   const hsize_t points = grows ? 4096 : data.points.size() / 3;
   const auto type_of = [](const PolyData::Array& a) {
     return a.values.index() == 0 ? H5T_IEEE_F32LE : H5T_STD_I32LE;
@@ -292,14 +293,14 @@ void Series::make_data_sets(const PolyData& data) {
        {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
     group_of(path_, root_, group, false);
   make("NumberOfPoints", H5T_STD_I64LE, 1, few, false);
-  make("Points", H5T_IEEE_F32LE, 3, points, !grows);
+  make("Points", H5T_IEEE_F32LE, 3, points, packed);
   for (const char* kind : kinds) {
     const std::string k = kind;
     group_of(path_, root_, k, false);
     for (const char* what : {"/NumberOfCells", "/NumberOfConnectivityIds"})
       make(k + what, H5T_STD_I64LE, 1, few, false);
     for (const char* what : {"/Offsets", "/Connectivity"})
-      make(k + what, H5T_STD_I64LE, 1, 4096, !grows);
+      make(k + what, H5T_STD_I64LE, 1, 4096, packed);
   }
   make("Steps/Values", H5T_IEEE_F64LE, 1, few, false);
   for (const char* what : {"Steps/PartOffsets", "Steps/NumberOfParts", "Steps/PointOffsets"})
@@ -308,12 +309,12 @@ void Series::make_data_sets(const PolyData& data) {
     make(what, H5T_STD_I64LE, kinds.size(), few, false);
   for (const PolyData::Array& a : data.point_data) {
     const std::string name = array_name(a.name);
-    make("PointData/" + name, type_of(a), static_cast<hsize_t>(a.components), points, !grows);
+    make("PointData/" + name, type_of(a), static_cast<hsize_t>(a.components), points, packed);
     make("Steps/PointDataOffsets/" + name, H5T_STD_I64LE, 1, few, false);
   }
   for (const PolyData::Array& a : data.cell_data) {
     const std::string name = array_name(a.name);
-    make("CellData/" + name, type_of(a), static_cast<hsize_t>(a.components), 4096, !grows);
+    make("CellData/" + name, type_of(a), static_cast<hsize_t>(a.components), 4096, packed);
     make("Steps/CellDataOffsets/" + name, H5T_STD_I64LE, 1, few, false);
   }
   add_names(data);
@@ -418,6 +419,6 @@ void Series::write_steps(std::size_t from) {
 }  // namespace whirl::io
 
 WHIRL_PLUGIN_EXPORT whirl::io::PolyDataSeries* whirl_hdf5_make_polydata(
-    const std::filesystem::path& file, whirl::InArchive* earlier) {
-  return new whirl::io::Series(file, earlier);
+    const std::filesystem::path& file, bool packed, whirl::InArchive* earlier) {
+  return new whirl::io::Series(file, packed, earlier);
 }
