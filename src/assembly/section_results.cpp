@@ -125,9 +125,16 @@ void resolve(const BentElement& e, const Mat3& chart, double x, SectionAxis& tra
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner) {
+  std::vector<SectionPoint> out;
+  calc_section_results(m, mesh, built, w, inner, out);
+  return out;
+}
+
+void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
+                          const system::Workspace& w, int inner, std::vector<SectionPoint>& out) {
   WHIRL_EXPECTS(inner >= 0);
   WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
-  std::vector<SectionPoint> out;
+  out.clear();
   SectionAxis transported;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
@@ -152,7 +159,6 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
       out.push_back(p);
     }
   }
-  return out;
 }
 
 // The moment of a generalized force on phi has that force as its part along the normal.

@@ -42,6 +42,9 @@ struct SectionPoint {
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner = 3);
+/// The same into `out`, whose memory is used again.
+void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
+                          const system::Workspace& w, int inner, std::vector<SectionPoint>& out);
 
 /// T at the left and at the right end of an element, N m, exact as above.
 /// @pre w was evaluated.

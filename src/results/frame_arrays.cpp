@@ -1,4 +1,6 @@
 #include <results/frame_arrays.hpp>
+#include <core/parallel.hpp>
+#include <io/queued_frames.hpp>
 
 #include <algorithm>
 
@@ -16,6 +18,13 @@ io::VtkFrameOptions frame_options(const run::Job& job, const model::VtkOutput& a
   options.compression = asked.compression;
   options.max_frames = static_cast<std::uint64_t>(asked.max_frames);
   return options;
+}
+
+std::unique_ptr<io::FrameWriter> frame_writer(const run::Job& job,
+                                              const io::VtkFrameOptions& options) {
+  std::unique_ptr<io::FrameWriter> writer = io::make_vtk_frames(options);
+  const int threads = job.options.jobs > 0 ? job.options.jobs : processors();
+  return threads > 1 ? io::make_queued_frames(std::move(writer)) : std::move(writer);
 }
 
 FrameArrays::FrameArrays(const run::Job& job)

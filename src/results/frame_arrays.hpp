@@ -11,6 +11,11 @@ namespace whirl::results {
 io::VtkFrameOptions frame_options(const run::Job& job, const model::VtkOutput& asked,
                                   const std::string& name);
 
+/// Writes them; beside the solver where the run may use more than one thread, in either way the same
+/// files.
+std::unique_ptr<io::FrameWriter> frame_writer(const run::Job& job,
+                                              const io::VtkFrameOptions& options);
+
 class FrameArrays {
  public:
   explicit FrameArrays(const run::Job& job);

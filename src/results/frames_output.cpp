@@ -31,6 +31,7 @@ class Frames final : public analysis::Observer {
   io::FrameSchedule schedule_;
   std::unique_ptr<io::FrameWriter> writer_;
   FrameArrays arrays_;
+  std::vector<assembly::SectionPoint> sections_;
   bool line_ = false, bearings_ = false;  ///< the sets that show section forces, forces of bearings
   double phi_ = 0, now_ = 0;
 };
@@ -41,7 +42,7 @@ Frames::Frames(const run::Job& job, const model::VtkOutput& o, const std::string
       schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1),
       arrays_(job) {
   const io::VtkFrameOptions options = frame_options(job, o, name);
-  writer_ = io::make_vtk_frames(options);
+  writer_ = frame_writer(job, options);
   line_ = options.line;
   bearings_ = options.bearings;
 }
@@ -110,9 +111,10 @@ void Frames::restore(InArchive& in) {
 void Frames::write(const Snapshot& s) {
   const auto node = [&s](Index i) -> const system::NodeState& { return s.node(i); };
   arrays_.take_nodes(node);
-  if (line_)
-    arrays_.take_sections(
-        assembly::calc_section_results(job_.model, job_.mesh, job_.built, s.workspace(), 0));
+  if (line_) {
+    assembly::calc_section_results(job_.model, job_.mesh, job_.built, s.workspace(), 0, sections_);
+    arrays_.take_sections(sections_);
+  }
   if (bearings_)
     arrays_.take_supports(node, s.context(), [&s](Index k) { return s.reactions()[k]; });
   writer_->frame(arrays_.state(s.t(), true));

@@ -6,7 +6,7 @@ namespace whirl::results {
 StaticFrames::StaticFrames(const run::Job& job, const std::string& step) {
   for (const model::VtkOutput& o : job.model.output.vtk) {
     if (!o.step.empty() && o.step != step) continue;
-    writers_.push_back(io::make_vtk_frames(frame_options(job, o, step)));
+    writers_.push_back(frame_writer(job, frame_options(job, o, step)));
     writers_.back()->begin(job.scene);
   }
 }
