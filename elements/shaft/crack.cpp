@@ -72,6 +72,26 @@ CrackLaw::Answer CrackLaw::at(double M_xi, double M_eta, double cosine) const {
   return out;
 }
 
+double CrackLaw::mean_compliance() const {
+  switch (breathing) {
+    case Breathing::open: return 0.5 * (c_xi + c_eta);
+    case Breathing::hinge: return 0.25 * c_xi;
+    case Breathing::weight:
+    case Breathing::response: break;
+  }
+  return 0.25 * (c_xi + c_eta);
+}
+
+CrackLaw::Answer CrackLaw::mean(double M_xi, double M_eta) const {
+  const double h = Loss(mean_compliance(), g, 1.0).h;
+  Answer out;
+  out.V = -0.5 * h * (M_xi * M_xi + M_eta * M_eta);
+  out.slope = Vec3(-h * M_xi, -h * M_eta, 0.0);
+  out.curvature.diagonal() = Vec3(-h, -h, 0.0);
+  out.f = breathing == Breathing::open ? 1.0 : 0.5;
+  return out;
+}
+
 CrackLaw::Answer CrackLaw::follow_weight(double M_xi, double M_eta, double cosine) const {
   Answer out;
   out.f = 0.5 * (1.0 + cosine);
@@ -141,6 +161,11 @@ struct Opening {
   }
 };
 
+CrackLaw::Answer answer(const Crack& k, const Context& c, double M_xi, double M_eta,
+                        double cosine) {
+  return c.whole_turn ? k.law.mean(M_xi, M_eta) : k.law.at(M_xi, M_eta, cosine);
+}
+
 /// dV/d(M_xi, M_eta, cosine).
 double slope_along(const CrackLaw::Answer& a, const Opening<double>&, int i) { return a.slope[i]; }
 template <int N>
@@ -156,7 +181,7 @@ ForceOut<T> bending_force(const Crack& k, const NodeT<T>& n1, const NodeT<T>& n2
                           const SectionMotion<T>& m1, const SectionMotion<T>& m2,
                           const Context& c) {
   const Opening<T> o(k, n1, n2, m1, m2, grown(k, c));
-  const CrackLaw::Answer a = k.law.at(value(o.M_xi), value(o.M_eta), value(o.cosine));
+  const CrackLaw::Answer a = answer(k, c, value(o.M_xi), value(o.M_eta), value(o.cosine));
   const T on_xi = slope_along(a, o, 0), on_eta = slope_along(a, o, 1);
   const T on_y[2] = {-k.r[0] * on_xi, -k.r[1] * on_xi};
   const T on_z[2] = {-k.r[0] * on_eta, -k.r[1] * on_eta};
@@ -186,7 +211,7 @@ void Crack::add_energy(const Nodes<2>& x, const Context& c, Energy& e) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
   const SectionMotion<double> m1(n1), m2(n2);
   const Opening<double> o(*this, n1, n2, m1, m2, grown(*this, c));
-  const CrackLaw::Answer a = law.at(o.M_xi, o.M_eta, o.cosine);
+  const CrackLaw::Answer a = answer(*this, c, o.M_xi, o.M_eta, o.cosine);
   e.elastic += a.V;
   if (c.averaged || !bow.varies()) return;
   const Vec2 rest = bow.rate(c.time) * (r[0] * rest1 + r[1] * rest2);

@@ -19,6 +19,10 @@
 //             f = (1 + m_xi/rho)/2 follows the angle of the bending moment itself; convex, and
 //             smooth but at m = 0. Open it has c_xi and c_eta, half open c_xi/8 and c_eta/2, closed
 //             nothing; for c_eta = 0 it is the hinge.
+// Means over the revolution (Context::whole_turn): the moment m at the crack stands still in space, and
+// W of the turning crack has the mean c/2 |m|^2, c = (c_xi + c_eta)/2 open, (c_xi + c_eta)/4 by weight and
+// by response, c_xi/4 as a hinge: a point in series like any other. (The mean of the stiffness between the
+// nodes would be that of the closed crack where the element is short.)
 // V is one function of the nodes' places and rotations, with no time in it: the crack keeps energy
 // whatever the law. Where f follows the angle, dV/dphi is a torque on the shaft, through which its
 // turning pays for what breathing does to the bending. A closed crack is the sound shaft. At m = 0
@@ -51,6 +55,10 @@ struct CrackLaw {
     double f = 0;  ///< how far it is open, 0 .. 1
   };
   Answer at(double M_xi, double M_eta, double cosine) const;
+  /// In the mean over a turn, of moments that stand still in space.
+  Answer mean(double M_xi, double M_eta) const;
+  /// rad/(N m), the same about all axes: the second derivatives of the mean of W.
+  double mean_compliance() const;
 
  private:
   Answer follow_weight(double M_xi, double M_eta, double cosine) const;
@@ -64,9 +72,10 @@ struct Crack {
   static constexpr system::Family family = system::Family::shaft;
   /// Its share of the stiffness over the revolution has sharp corners where it switches.
   system::Dependence depends(const system::Context& c) const {
-    return {.angle = system::each_angle,
-            .time = !c.averaged && bow.varies() && !(rest1.isZero(0) && rest2.isZero(0)),
-            .harmonics = 62};
+    const bool bowed = !(rest1.isZero(0) && rest2.isZero(0));
+    return {.angle = c.whole_turn && !bowed ? system::no_angle : system::each_angle,
+            .time = !c.averaged && bow.varies() && bowed,
+            .harmonics = c.whole_turn ? 2 : 62};
   }
 
   CrackLaw law;

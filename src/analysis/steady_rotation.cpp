@@ -126,7 +126,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
   orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
   sense_ = spin_senses(system, ratio_);
   find_unsteady_joint();
-  workspace_.context.averaged = running_.mean;
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
   workspace_.context.hysteretic = running_.hysteretic;
   for (const auto& term : system.terms())
     hysteretic_ = hysteretic_ || term->depends(workspace_.context).rate;
@@ -429,9 +429,9 @@ bool SteadySystem::visit_revolution(
 
 bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta,
                               la::MCK& out) {
-  workspace_.context.averaged = false;
+  workspace_.context.averaged = workspace_.context.whole_turn = false;
   const bool inside = evaluate_tangent(f, Omega, q, theta, out, all_);
-  workspace_.context.averaged = running_.mean;
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
   return inside;
 }
 

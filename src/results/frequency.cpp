@@ -373,9 +373,9 @@ void FrequencyStep::warn_of_mean_stiffness() {
   if (!stiffness && !turns_with_inertia(job.model)) return;
   const std::string what =
       breathes(job.model)
-          ? "the stiffness of the cracked rotor enters as its mean over a revolution, the crack "
-            "opened by its weight and by what bends the shaft in the mean; in truth it changes as "
-            "the rotor turns"
+          ? "the crack enters as the mean of its compliance over a revolution; in truth the rotor "
+            "is "
+            "softer or stiffer as it turns"
           : fmt::format(
                 "the {} of the asymmetric rotor enters as its mean over a revolution; where it "
                 "spins its critical speeds are a pair, with instability between them",

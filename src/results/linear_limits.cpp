@@ -48,10 +48,7 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
   Diagnostic d;
   d.code = "W14";
   d.message = fmt::format(
-      "step '{}': the stiffness of the cracked rotor enters as its mean over a revolution, the "
-      "crack "
-      "opened by its weight and by what bends the shaft in the mean",
-      step);
+      "step '{}': the crack enters as the mean of its compliance over a revolution", step);
   d.hint = "an unbalance response and a transient turn with the shaft";
   warn(job, std::move(d));
 }

@@ -205,6 +205,7 @@ void StaticRun::evaluate() {
   VecX r(job_.system().size());
   problem_.frames = x.frames;
   problem_.workspace().context.load = load_;
+  problem_.workspace().context.whole_turn = job_.steady_rotation_of(state_).mean;
   if (!problem_.residual(x.t, x.q, x.v, x.a, r))
     throw run_error("R11",
                     fmt::format("step '{}': the state found cannot be evaluated", step_.name), {});

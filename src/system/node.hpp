@@ -75,6 +75,9 @@ struct Context {
   /// Means over the revolution are asked for: gear meshes and rolling bearings, whose periods
   /// samples of the revolution would alias, answer with their own mean.
   bool averaged = false;
+  /// And what turns with its shaft answers with its mean over the turn, not for the angle at hand, where
+  /// that is more than the mean of samples (a crack, whose compliance stands in series).
+  bool whole_turn = false;
   /// Hysteretic damping has no form in time: in motions a viscous stand-in acts (false); in steady
   /// states and in small motions about them, at the rate growth + i whirl (1/s), a complex
   /// stiffness (true). whirl: 0 for the steady state itself, infinity to leave it out.

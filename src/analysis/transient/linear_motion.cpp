@@ -107,6 +107,17 @@ void add_series(const std::vector<Index>& entry, const MatX& cosine, const MatX&
   sum_series(cosine, sine, angle, [&](Index e, double x) { r[entry[at(e)]] += x; });
 }
 
+/// Something stands in the matrices at another angle of the rotor otherwise.
+bool sees_the_angle(const system::System& system, const SteadySystem& running) {
+  std::vector<double> rate(at(system.nodes()), 0.0);
+  for (Index i = 0; i < system.nodes(); ++i)
+    if (running.spinning()[at(i)]) rate[at(i)] = running.ratio(system.node(i).line);
+  system::Context at_hand;
+  at_hand.time = running.running().time;
+  return std::any_of(system.terms().begin(), system.terms().end(),
+                     [&](const auto& term) { return term->sees_turning(at_hand, rate); });
+}
+
 }  // namespace
 
 LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running,
@@ -125,7 +136,7 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
   if (e.frames.moved() || start.frames.moved())
     throw run_error("E39", "the rotor tilts too far for small motions",
                     "leave linear out of the step");
-  if (linear.running().phase_dependent()) {
+  if (sees_the_angle(system, linear.running())) {
     la::MCK turned = system.make_matrices();
     const VecX K = diagonal_of(m.K), M = diagonal_of(m.M);
     double worst = 0.0;
