@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 using whirl::test::Columns;
 using whirl::test::DeckRun;
@@ -85,5 +87,47 @@ TEST(Standstill, ARangeThroughZeroSpeedHasThePeaksOfBothSenses) {
         EXPECT_NEAR(peaks.rows[k][size] / peaks.rows[3 - k][size], 1.0, 1e-6) << what;
       }
       EXPECT_FALSE(run.says("not finite")) << what;
+    }
+}
+
+// A torque that turns a free train has no twist at 0 Hz, and leaves in its shafts what the inertia of the
+// discs takes up beyond them: of 100 N m at the second of 4, 0.5 and 3 kg m2 100 4/7.5 at most.
+TEST(Standstill, AStillTorqueIsSharedByInertia) {
+  for (const char* motion : {"all", "torsional"})
+    for (const char* frequencies : {R"("0 Hz", "1 Hz")", R"("1e-9 Hz", "1e-3 Hz")"}) {
+      const DeckRun run(
+          "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 "
+          "m/s^2\"\n[[material]]\nname = \"light\"\nE = \"210 "
+          "GPa\"\nnu = 0.3\n"
+          "density = \"1e-3 kg/m^3\"\n[[shaft]]\nname = \"a\"\nmaterial = \"light\"\ncolumns = "
+          "[\"name\", "
+          "\"length[mm]\", \"od[mm]\"]\nrows = [[\"s\", 400, 60], [\"t\", 500, 50]]\n" +
+          [] {
+            std::string disks;
+            for (const auto& [at, inertia] :
+                 {std::pair{"s:start", 4.0}, {"s:end", 0.5}, {"t:end", 3.0}})
+              disks += fmt::format(
+                  "[[disk]]\nat = \"{}\"\nmass = \"10 kg\"\nIp = \"{} kg.m^2\"\nId = "
+                  "\"{} kg.m^2\"\n",
+                  at, inertia, 0.6 * inertia);
+            return disks;
+          }() +
+          "[[bearing]]\nname = \"A\"\nat = \"s:start\"\ntype = \"rigid\"\ndirections = [\"x\", "
+          "\"y\", "
+          "\"z\"]\n[[bearing]]\nname = \"B\"\nat = \"t:end\"\ntype = \"rigid\"\ndirections = "
+          "[\"y\", "
+          "\"z\"]\n[[probe]]\nname = \"p\"\nat = \"s:end\"\n[[step]]\nname = \"s\"\ntype = "
+          "\"harmonic_response\"\nmotion = \"" +
+          std::string(motion) + "\"\nfrequency = { values = [" + frequencies +
+          "] }\n[[step.force]]\nat = \"s:end\"\nmoment = [\"100 N.m\", \"0 N.m\", \"0 N.m\"]\n");
+      const std::string what = fmt::format("{} {}: {}", motion, frequencies, run.log);
+      ASSERT_EQ(run.exit, 0) << what;
+      const Columns response = run.csv("s_response.csv");
+      const std::vector<double>& row = response.rows.at(0);
+      // the shaft towards 4 kg m2 takes what that one takes up, the other what 3 kg m2 take up
+      EXPECT_NEAR(row[response.column("largest torque in a [N.m]")], 100 * 4.0 / 7.5, 1e-3) << what;
+      EXPECT_NEAR(row[response.column("bearing A force y [N]")], 0.0, 1e-6) << what;
+      const double twist = row[response.column("p twist amplitude [rad]")];
+      EXPECT_TRUE(std::isnan(twist) || twist > 1e6) << what;
     }
 }

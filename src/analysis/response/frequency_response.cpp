@@ -30,8 +30,9 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   drop_rounding(largest_displacement(linear_.system(), a), p.probe);
   for (Index k : options_.unknowns)
     p.unknown.push_back(a[k]);
-  if (meter_) meter_->measure(a, force, w, options_.outputs, p.output);
-  if (options_.shapes) p.shape = std::move(a);
+  const VecXc& shape = solver_.bounded().size() > 0 ? solver_.bounded() : a;
+  if (meter_) meter_->measure(shape, force, w, options_.outputs, p.output);
+  if (options_.shapes) p.shape = shape;
   return p;
 }
 

@@ -24,17 +24,6 @@ VecXc times(const la::BlockMatrix<6>& matrix, const VecXc& x) {
   return re.cast<Complex>() + Complex(0, 1) * im.cast<Complex>();
 }
 
-/// The last unknown phi of the line that `first` stands on.
-Index last_of_line(const system::System& s, std::span<const unsigned char> active, Index first) {
-  const Index line = s.node(first / 6).line;
-  Index last = first;
-  for (Index i = first / 6; i < s.nodes(); ++i) {
-    const Index k = 6 * i + system::spin_phi;
-    if (s.node(i).line == line && !s.node(i).scalar && active[at(k)]) last = k;
-  }
-  return last;
-}
-
 /// Size of the single torques whose sum in row k is zero but for rounding when nothing drives the
 /// rotor round.
 double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, const VecXc& f,
@@ -98,36 +87,33 @@ bool HarmonicSolver::prepare(double Omega, double w) {
   if (w != 0.0 && !slow &&
       solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
     return true;
-  std::vector<Index> first, last, axial;
+  std::vector<Index> spins, axial;
   // A line that is free along its axis is never pushed along it (E32): at w = 0 it may stand anywhere.
   for (const Index k : linear_.equilibrium().axial_holds)
     if (w == 0.0 && motion_.takes_part(k)) axial.push_back(k);
-  for (const Index k : spin_holds) {
-    if (!motion_.takes_part(k)) continue;
-    first.push_back(k);
-    last.push_back(last_of_line(linear_.system(), motion_.active(), k));
-  }
-  if (first.empty() && axial.empty())
+  for (const Index k : spin_holds)
+    if (motion_.takes_part(k)) spins.push_back(k);
+  if (spins.empty() && axial.empty())
     return w == 0.0 &&
            solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
-  spin_free_ = hold(m, w, std::move(first), axial, first_) &&
-               (w != 0.0 || hold(m, w, std::move(last), axial, last_));
+  spin_free_ = hold(m, w, std::move(spins), axial);
   return spin_free_;
 }
 
 bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknowns,
-                          const std::vector<Index>& axial, Held& held) {
+                          const std::vector<Index>& axial) {
   std::vector<unsigned char> active(motion_.active().begin(), motion_.active().end());
   for (const Index k : unknowns)
     active[at(k)] = 0;
   for (const Index k : axial)
     active[at(k)] = 0;
-  held.at = std::move(unknowns);
-  if (held.active != active || !held.solver) {
-    held.active = std::move(active);
-    held.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held.active);
+  held_.at = std::move(unknowns);
+  if (held_.active != active || !held_.solver) {
+    held_.active = std::move(active);
+    held_.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held_.active);
   }
-  return held.solver->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
+  return held_.solver->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) ==
+         la::Status::ok;
 }
 
 void HarmonicSolver::solve(VecXc& x) {
@@ -135,11 +121,13 @@ void HarmonicSolver::solve(VecXc& x) {
   WHIRL_EXPECTS(x.size() == linear_.system().size());
   for (Index k = 0; k < x.size(); ++k)
     if (!motion_.takes_part(k)) x[k] = 0;
+  bounded_.resize(0);
   if (spin_free_)
     solve_held(x);
   else
     solver_->solve(x);
   linear_.system().complete(linear_.equilibrium().state, x);
+  if (bounded_.size() > 0) linear_.system().complete(linear_.equilibrium().state, bounded_);
 }
 
 void HarmonicSolver::solve_columns(MatXc& x) {
@@ -167,21 +155,20 @@ VecXc HarmonicSolver::multiply(const VecXc& x) const {
   return out;
 }
 
+void HarmonicSolver::solve_moving(VecXc& x) const {
+  for (Index k = 0; k < x.size(); ++k)
+    if (!held_.active[at(k)]) x[k] = 0;
+  held_.solver->solve(x);
+}
+
 void HarmonicSolver::solve_held(VecXc& x) {
   const VecXc f = x;
-  const auto answer = [&](Held& held) {
-    VecXc y = f;
-    for (Index k = 0; k < y.size(); ++k)
-      if (!held.active[at(k)]) y[k] = 0;
-    held.solver->solve(y);
-    return y;
-  };
-  x = answer(first_);
+  solve_moving(x);
   const VecXc rest =
       f - multiply(x);  // what the holds must exert: the torques that drive the rotors round
   if (w_ != 0.0) {
     VecXc driving = VecXc::Zero(rest.size());
-    for (const Index k : first_.at)
+    for (const Index k : held_.at)
       if (std::abs(rest[k]) > 1e-12 * torque_size(linear_.system(), *matrices_, x, f, k))
         driving[k] = rest[k];
     // Their inertia and damping take the torque up: turning by c, then what that does to the twist.
@@ -190,38 +177,29 @@ void HarmonicSolver::solve_held(VecXc& x) {
                                          spins.transpose().cast<Complex>() * driving);
     VecXc turned = spins.cast<Complex>() * c;
     VecXc left = driving - inertia_and_damping(turned);
-    for (const Index k : first_.at)
-      left[k] = 0;
-    first_.solver->solve(left);
+    solve_moving(left);
+    constexpr double many_turns = 1e3;  // rad: their rounding is no force
+    if (turned.cwiseAbs().maxCoeff() > many_turns) bounded_ = x + left;
     x += turned + left;
     // A matrix that is singular at a frequency of the twist has no answer at all.
     const VecXc wrong = f - multiply(x);
-    for (const Index k : first_.at)
+    for (const Index k : held_.at)
       if (std::abs(wrong[k]) > 1e-6 * torque_size(linear_.system(), *matrices_, x, f, k)) {
         x.setConstant(Complex(nan, nan));
+        bounded_.resize(0);
         return;
       }
     return;
   }
   // Rounding leaves some torque where there is none.
-  bool driven = false;
-  for (const Index k : first_.at)
-    driven =
-        driven || std::abs(rest[k]) > 1e-9 * torque_size(linear_.system(), *matrices_, x, f, k);
-  if (!driven) {
+  VecXc driving = VecXc::Zero(rest.size());
+  for (const Index k : held_.at)
+    if (std::abs(rest[k]) > 1e-9 * torque_size(linear_.system(), *matrices_, x, f, k))
+      driving[k] = rest[k];
+  if (driving.isZero(0.0))
     add_free_spin(x);
-    return;
-  }
-  // What depends on where the rotor is held has no answer; displacements and angles are compared
-  // with the largest of their kind.
-  const VecXc other = answer(last_);
-  double largest[2] = {0, 0};
-  for (Index k = 0; k < x.size(); ++k)
-    largest[k % 6 < 3 ? 0 : 1] = std::max(largest[k % 6 < 3 ? 0 : 1], std::abs(x[k]));
-  for (Index k = 0; k < x.size(); ++k)
-    if (!(std::abs(x[k] - other[k]) <= 1e-9 * largest[k % 6 < 3 ? 0 : 1])) x[k] = Complex(nan, nan);
-  for (const Index k : first_.at)
-    x[k] = Complex(nan, nan);
+  else
+    add_driven_spin(driving, x);
 }
 
 VecXc HarmonicSolver::inertia_and_damping(const VecXc& x) const {
@@ -242,7 +220,7 @@ MatXc HarmonicSolver::spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M
 }
 
 MatX HarmonicSolver::free_spins() const {
-  const Index unknowns = linear_.system().size(), n = static_cast<Index>(first_.at.size());
+  const Index unknowns = linear_.system().size(), n = static_cast<Index>(held_.at.size());
   MatX spins(unknowns, n);
   // Nothing but rounding moves a journal where its shaft turns, and its damping would be taken for one
   // of the spin.
@@ -250,17 +228,46 @@ MatX HarmonicSolver::free_spins() const {
   const double length = extent_of(linear_.system());
   for (Index j = 0; j < n; ++j) {
     VecX e = VecX::Zero(unknowns), pull = e;
-    e[first_.at[at(j)]] = 1.0;
+    e[held_.at[at(j)]] = 1.0;
     matrices_->K.add_multiply(-1.0, e, pull);
-    for (Index k = 0; k < unknowns; ++k)
-      if (!first_.active[at(k)]) pull[k] = 0.0;
     VecXc follow = pull.cast<Complex>();
-    first_.solver->solve(follow);
+    solve_moving(follow);
     spins.col(j) = follow.real() + e;
     for (Index k = 0; k < unknowns; ++k)
       if (std::abs(spins(k, j)) < rounding * (k % 6 < 3 ? length : 1.0)) spins(k, j) = 0.0;
   }
   return spins;
+}
+
+void HarmonicSolver::add_driven_spin(const VecXc& driving, VecXc& x) {
+  const MatX spins = free_spins();
+  // Of a torque T the damping of the free spins, or else their inertia, takes up all as w goes to 0: they
+  // turn by T/(i w c) or -T/(w^2 J), and load the rotor by what does not depend on w.
+  for (const la::BlockMatrix<6>* matrix : {&matrices_->C, &matrices_->M}) {
+    MatX images(spins.rows(), spins.cols());
+    for (Index j = 0; j < spins.cols(); ++j) {
+      VecX image = VecX::Zero(spins.rows());
+      matrix->add_multiply(1.0, spins.col(j), image);
+      images.col(j) = image;
+    }
+    const MatX on_spins = spins.transpose() * images;
+    const VecXc torque = spins.transpose().cast<Complex>() * driving;
+    MatX parts(torque.size(), 2);
+    parts << torque.real(), torque.imag();
+    const double least = 1e-9 * (spins.cwiseAbs().transpose() * images.cwiseAbs()).maxCoeff();
+    if (!(least > 0.0)) continue;
+    const auto taken = la::pivoted_solution(on_spins, parts, least);
+    if (!taken) continue;
+    const VecXc share = taken->col(0).cast<Complex>() + Complex(0, 1) * taken->col(1);
+    VecXc left = driving - images.cast<Complex>() * share;
+    solve_moving(left);
+    x += left;
+    break;
+  }
+  bounded_ = x;
+  for (Index j = 0; j < spins.cols(); ++j)
+    for (Index k = 0; k < x.size(); ++k)
+      if (spins(k, j) != 0.0) x[k] = Complex(nan, nan);
 }
 
 void HarmonicSolver::add_free_spin(VecXc& x) const {

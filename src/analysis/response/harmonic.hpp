@@ -26,6 +26,9 @@ class HarmonicSolver {
   void solve(VecXc& x);
   /// The same of every column.
   void solve_columns(MatXc& x);
+  /// Of the last solve() at w = 0, or so slow that it turns on and on, with a force that turns a free
+  /// rotor: the motion without that turning, for all that does not hang on it; empty else.
+  const VecXc& bounded() const { return bounded_; }
   Linearizer& linear() { return linear_; }
 
  private:
@@ -37,7 +40,7 @@ class HarmonicSolver {
   };
   /// axial: unknowns held beside them.
   bool hold(const la::MCK& m, double w, std::vector<Index> unknowns,
-            const std::vector<Index>& axial, Held& held);
+            const std::vector<Index>& axial);
   /// S x with the matrices prepared.
   VecXc multiply(const VecXc& x) const;
   VecXc inertia_and_damping(const VecXc& x) const;
@@ -47,17 +50,23 @@ class HarmonicSolver {
   MatXc spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M,
                     const la::BlockMatrix<6>& C) const;
   void solve_held(VecXc& x);
+  /// With the spins held; what does not move gets no force.
+  void solve_moving(VecXc& x) const;
   /// Adds the turning of free rotors that the limit w -> 0 asks for.
   void add_free_spin(VecXc& x) const;
+  /// Adds what the turning of free rotors by these torques on what is held leaves in them as w goes to
+  /// 0; x without bound becomes NaN.
+  void add_driven_spin(const VecXc& driving, VecXc& x);
 
   Linearizer& linear_;
   MotionReduction motion_;
   std::unique_ptr<la::DirectSolver<Complex>> solver_;
-  bool spin_free_ = false;  ///< prepared without inertia: `first_` and `last_` are used
+  bool spin_free_ = false;  ///< prepared without inertia: `held_` is used
   double w_ = 0;
   const la::MCK* matrices_ = nullptr;
   VecXc column_;
-  Held first_, last_;  ///< free spins held at the first and at the last node of their lines
+  Held held_;  ///< free spins held at a node of their lines
+  VecXc bounded_;
 };
 
 /// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2
