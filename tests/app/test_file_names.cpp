@@ -29,9 +29,7 @@ std::string probe(const std::string& name) {
 }
 
 std::string transient(const std::string& name) {
-  return fmt::format(
-      "[[step]]\nname = \"{}\"\ntype = \"transient\"\nduration = \"5 ms\"\n",
-      name);
+  return fmt::format("[[step]]\nname = \"{}\"\ntype = \"transient\"\nduration = \"5 ms\"\n", name);
 }
 
 std::string modal(const std::string& name, const std::string& speed) {
