@@ -89,6 +89,8 @@ void add_force_figure(results::FrequencyStep& s, const UnbalanceResponse& r,
   s.add_figure(std::move(f));
 }
 
+constexpr const char* no_motion = "no periodic motion was found at the speed";
+
 io::Table make_table(const UnbalanceResponse& r, std::size_t k,
                      const std::vector<analysis::ResponseProbe>& probes,
                      const std::vector<analysis::Measurement>& outputs) {
@@ -102,6 +104,8 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
       t.columns.push_back({fmt::format("{} {}", m.name, c), "N", "0-peak"});
       t.columns.push_back({fmt::format("{} {} phase lag", m.name, c), "deg", ""});
     }
+  if (std::any_of(r.points.begin(), r.points.end(), [](const SteadyPoint& x) { return !x.found; }))
+    t.nan_means = no_motion;
   for (const SteadyPoint& x : r.points) {
     std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
     for (std::size_t p = 0; p < probes.size(); ++p)
@@ -130,6 +134,7 @@ io::Table multiples_table(const UnbalanceResponse& r,
         t.columns.push_back({fmt::format("{} {}x {}", p.name, h, way), "m",
                              "radius of the circle that turns with or against the spin"});
   }
+  t.nan_means = no_motion;
   t.columns.push_back({"left out", "-", "about: the last harmonic computed over the largest"});
   for (const SteadyPoint& x : r.points) {
     std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
@@ -192,7 +197,10 @@ io::Table peak_table(results::FrequencyStep& s, const UnbalanceResponse& r,
                      const std::vector<results::PeakError>& errors) {
   io::Table table;
   table.title = "Peaks of the response";
-  table.nan_means = "no half-power point on this side within the speeds; an error: not judged";
+  table.nan_means =
+      "no half-power point on this side within the speeds; an error: not judged; an amplitude and "
+      "its "
+      "factor: without bound";
   table.columns = {{"probe", "-", ""},
                    {"order", "-", ""},
                    {"speed", "rpm", ""},
@@ -206,13 +214,16 @@ io::Table peak_table(results::FrequencyStep& s, const UnbalanceResponse& r,
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const analysis::ResponsePeak& p = peaks[k];
     const std::string& name = probes[p.probe].name;
-    table.add({name, r.orders[p.order], to_rpm(p.speed), p.amplitude, p.phase_lag * 180 / pi,
-               p.amplification(), to_rpm(p.low), to_rpm(p.high), errors[k].amplitude,
+    const double amplitude = p.bounded ? p.amplitude : nan;
+    const double amplification = p.bounded ? p.amplification() : nan;
+    table.add({name, r.orders[p.order], to_rpm(p.speed), amplitude, p.phase_lag * 180 / pi,
+               amplification, to_rpm(p.low), to_rpm(p.high), errors[k].amplitude,
                errors[k].amplification});
     io::Value e = io::Value::object();
     e["speed [rpm]"] = to_rpm(p.speed);
-    e["amplitude 0-peak [m]"] = p.amplitude;
-    e["amplification factor"] = p.amplification();
+    e["amplitude 0-peak [m]"] = amplitude;
+    e["amplification factor"] = amplification;
+    e["bounded"] = p.bounded;
     e["mesh error of amplitude"] = errors[k].amplitude;
     e["mesh error of amplification"] = errors[k].amplification;
     s.summary()["peaks"][name].push(std::move(e));
@@ -279,7 +290,11 @@ Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::Res
       }
     // between the speeds
     for (const analysis::ResponsePeak& peak : peaks) {
-      if (peak.probe != p || !std::isfinite(peak.amplitude)) continue;
+      if (peak.probe != p) continue;
+      if (!peak.bounded) {
+        most = nan;
+        break;
+      }
       most = std::max(most, peak.amplitude);
       if (peak.amplitude > largest.amplitude) largest = {peak.amplitude, peak.speed};
     }
@@ -303,7 +318,7 @@ std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
   try {
     BothMeshes meshes(s, options);
     for (std::size_t k = 0; k < peaks.size(); ++k)
-      out[k] = meshes.error_of(peaks[k]);
+      if (peaks[k].bounded) out[k] = meshes.error_of(peaks[k]);
     if (peaks.empty())
       accuracy.add(meshes.error_at(largest.speed, largest.amplitude),
                    fmt::format("the largest response, at {:.6g} rpm", to_rpm(largest.speed)));
@@ -311,9 +326,10 @@ std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
     if (peaks.empty()) accuracy.add(nan, {});
   }
   for (std::size_t k = 0; k < peaks.size(); ++k)
-    accuracy.add(out[k].amplitude,
-                 fmt::format("the peak of probe '{}' at {:.6g} rpm", probes[peaks[k].probe].name,
-                             to_rpm(peaks[k].speed)));
+    if (peaks[k].bounded)
+      accuracy.add(out[k].amplitude,
+                   fmt::format("the peak of probe '{}' at {:.6g} rpm", probes[peaks[k].probe].name,
+                               to_rpm(peaks[k].speed)));
   accuracy.report();
   return out;
 }
@@ -385,7 +401,7 @@ std::vector<double> shape_speeds(const model::UnbalanceStep& law,
   std::vector<double> speeds;
   speeds.reserve(peaks.size());
   for (const analysis::ResponsePeak& p : peaks)
-    speeds.push_back(p.speed);
+    if (p.bounded) speeds.push_back(p.speed);
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end(),
                            [](double a, double b) { return b - a < 0.01 * b; }),
@@ -466,6 +482,47 @@ std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Lar
   return out;
 }
 
+/// Where amplitudes have no bound.
+void warn_of_unbounded(results::FrequencyStep& s, const std::vector<analysis::ResponsePeak>& peaks,
+                       const analysis::UnbalanceOptions& o) {
+  std::vector<double> speeds;
+  for (const analysis::ResponsePeak& p : peaks)
+    if (!p.bounded && (speeds.empty() || std::abs(p.speed - speeds.back()) > 1e-6 * p.speed))
+      speeds.push_back(p.speed);
+  if (speeds.empty()) return;
+  std::string list;
+  for (const double x : speeds)
+    list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", to_rpm(x));
+  Diagnostic d;
+  d.code = "W13";
+  d.message =
+      fmt::format("step '{}': the response has no bound at {} rpm: {}", s.step.name, list,
+                  o.multiples > 0      ? "there is no periodic motion beside it"
+                  : o.turns_with_rotor ? "nothing damps it there, or the rotor begins to bend out"
+                                       : "nothing damps it there");
+  d.hint = "give bearings or shafts damping; amplitudes beside these speeds grow without end";
+  results::warn(s.job, std::move(d));
+}
+
+/// Where no periodic motion was found.
+void warn_of_no_motion(results::FrequencyStep& s, const UnbalanceResponse& r) {
+  const auto none = [](const SteadyPoint& x) { return !x.found; };
+  const auto first = std::find_if(r.points.begin(), r.points.end(), none);
+  if (first == r.points.end()) return;
+  const auto last = std::find_if(r.points.rbegin(), r.points.rend(), none);
+  Diagnostic d;
+  d.code = "W13";
+  d.message = fmt::format(
+      "step '{}': no periodic motion found at {} of {} speeds, {:.6g} to {:.6g} rpm: the crack's "
+      "opening and closing did not settle",
+      s.step.name, std::count_if(r.points.begin(), r.points.end(), none), r.points.size(),
+      to_rpm(first->Omega), to_rpm(last->Omega));
+  d.hint =
+      "a stability step finds the bands in which there is none; a transient step follows the "
+      "motion";
+  results::warn(s.job, std::move(d));
+}
+
 }  // namespace
 
 UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
@@ -497,6 +554,10 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
 
   s.summary()["speeds"] = r.points.size();
   const Largest largest = find_largest(r, shown, peaks, s.summary());
+  const auto unbounded = std::find_if(peaks.begin(), peaks.end(),
+                                      [](const analysis::ResponsePeak& p) { return !p.bounded; });
+  warn_of_unbounded(s, peaks, o);
+  warn_of_no_motion(s, r);
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   io::Table found =
@@ -517,7 +578,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   add_grades(s, law);
   std::vector<double> also{o.speeds.front(), o.speeds.back()};
   for (const analysis::ResponsePeak& p : peaks)
-    also.push_back(p.speed);
+    if (p.bounded) also.push_back(p.speed);
   add_shapes(s, r, o, shape_speeds(law, peaks),
              largest.amplitude > 0 ? also : std::vector<double>{}, largest);
 
@@ -536,9 +597,12 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
     results::warn(job, std::move(d));
   }
   const plot::DisplayUnit unit = plot::length_unit(largest.amplitude);
-  s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm{}", r.points.size(),
-                       peaks.size(), readable(unit.factor * largest.amplitude), unit.name,
-                       to_rpm(largest.speed), margins));
+  const std::string most =
+      unbounded != peaks.end()
+          ? fmt::format("without bound at {:.0f} rpm", to_rpm(unbounded->speed))
+          : fmt::format("largest {} {} at {:.0f} rpm", readable(unit.factor * largest.amplitude),
+                        unit.name, to_rpm(largest.speed));
+  s.finish(fmt::format("{} speeds, {} peaks, {}{}", r.points.size(), peaks.size(), most, margins));
   return {std::move(o.probes), r, std::move(peaks)};
 }
 

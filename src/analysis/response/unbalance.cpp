@@ -51,13 +51,13 @@ void UnbalanceSolver::stand_still(SteadyPoint& p) const {
 
 VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
   const PeriodicMotion motion = periodic_->solve(Omega);
-  if (!motion.converged)
-    throw run_error("E76",
-                    fmt::format("no periodic motion found at {:.6g} rpm: the crack's opening and "
-                                "closing did not settle in {} rounds",
-                                to_rpm(Omega), motion.rounds),
-                    "near a band of instability there may be none; a transient step follows the "
-                    "motion itself");
+  if (!motion.converged) {
+    p.found = false;
+    const VecXc none = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
+    for (int h = 0; h <= options_.multiples; ++h)
+      put_multiple(none, p);
+    return none;
+  }
   const VecXc mean = linear_.equilibrium().state.q.cast<Complex>() + motion.amplitude[0];
   put_multiple(mean, p);
   for (int h = 1; h <= options_.multiples; ++h)
@@ -168,8 +168,14 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
                                  std::vector<SteadyPoint>& extra) {
   WHIRL_EXPECTS(probe < options_.probes.size());
   const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
-  const auto evaluate = [&](double Omega) { return size(at(Omega, false)); };
+  bool all_found = true;
+  const auto evaluate = [&](double Omega) {
+    const SteadyPoint p = at(Omega, false);
+    all_found = all_found && p.found;
+    return size(p);
+  };
   for (const std::size_t i : maxima(coarse, order, probe)) {
+    all_found = true;
     const double f1 = size(coarse[i]);
     ResponsePeak peak;
     peak.order = order;
@@ -179,6 +185,13 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
     const SteadyPoint top_point = at(peak.speed);
     peak.amplitude = size(top_point);
     peak.phase_lag = -std::arg(top_point.probe[order][probe].forward());
+    peak.bounded = all_found && is_bounded(peak);
+    if (!peak.bounded) {
+      peak.amplitude = infinity;
+      peak.low = peak.high = peak.low_seen = peak.high_seen = peak.speed;
+      peaks_.push_back(peak);
+      continue;
+    }
     find_half_power(coarse, i, peak);
     peaks_.push_back(peak);
     if (!options_.refine_peaks) continue;
@@ -261,6 +274,25 @@ void UnbalanceSolver::resolve(std::vector<SteadyPoint>& points) {
   }
 }
 
+bool UnbalanceSolver::is_bounded(const ResponsePeak& peak) {
+  constexpr double beside = 1e-7;
+  const PointAmplitude below = at(peak.speed * (1 - beside), false).probe[peak.order][peak.probe];
+  const PointAmplitude above = at(peak.speed * (1 + beside), false).probe[peak.order][peak.probe];
+  const double sense = (below.y * std::conj(above.y) + below.z * std::conj(above.z)).real();
+  const double size = std::sqrt((std::norm(below.y) + std::norm(below.z)) *
+                                (std::norm(above.y) + std::norm(above.z)));
+  return !(sense < -0.5 * size);
+}
+
+void UnbalanceSolver::drop_unbounded(std::vector<SteadyPoint>& points) const {
+  constexpr double near = 1e-6;
+  std::erase_if(points, [&](const SteadyPoint& x) {
+    return std::any_of(peaks_.begin(), peaks_.end(), [&](const ResponsePeak& p) {
+      return !p.bounded && std::abs(x.Omega - p.speed) < near * std::abs(p.speed);
+    });
+  });
+}
+
 UnbalanceResponse UnbalanceSolver::run() {
   constexpr int rounds = 4;
   UnbalanceResponse out;
@@ -268,6 +300,14 @@ UnbalanceResponse UnbalanceSolver::run() {
   out.orders.assign(orders.begin(), orders.end());
   peaks_.clear();
   out.points = points_at(options_.speeds);
+  if (std::none_of(out.points.begin(), out.points.end(),
+                   [](const SteadyPoint& p) { return p.found; }))
+    throw run_error(
+        "E76",
+        "no periodic motion found at any of the speeds: the crack's opening and closing "
+        "did not settle",
+        "near a band of instability there may be none; a transient step follows the "
+        "motion itself");
   if (options_.resolve) resolve(out.points);
   const std::size_t probes = options_.probes.size();
   std::vector<std::size_t> open(orders.size() * probes);
@@ -278,6 +318,7 @@ UnbalanceResponse UnbalanceSolver::run() {
     std::erase_if(
         open, [&](std::size_t k) { return !shows_another(out.points, k / probes, k % probes); });
   }
+  drop_unbounded(out.points);
   return out;
 }
 

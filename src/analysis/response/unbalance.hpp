@@ -43,6 +43,7 @@ struct SteadyPoint {
   /// real. Of a rotor that breathes.
   std::vector<std::vector<PointAmplitude>> multiple;
   double left_out = 0;  ///< of the last harmonic that was computed, share of the largest
+  bool found = true;    ///< false: no periodic motion was; the amplitudes are NaN
 };
 
 struct UnbalanceResponse {
@@ -54,7 +55,11 @@ struct UnbalanceResponse {
 struct ResponsePeak {
   std::size_t order = 0, probe = 0;  ///< numbers in UnbalanceResponse::orders and the probes
   double speed = 0, amplitude = 0;   ///< rad/s, m
-  double phase_lag = 0;              ///< of the forward circle behind the rotor mark, rad
+  /// False: nothing damps it (or the rotor, whose stiffness turns, begins to bend out there): the response
+  /// turns its sign round as the speed passes, and its amplitude is infinite; or there is no periodic
+  /// motion beside it.
+  bool bounded = true;
+  double phase_lag = 0;  ///< of the forward circle behind the rotor mark, rad
   double low = nan,
          high = nan;  ///< speeds with 1/sqrt(2) of the amplitude; nan: not within the range
   double low_seen = nan, high_seen = nan;  ///< speeds between which it is larger than that
@@ -91,6 +96,10 @@ class UnbalanceSolver {
   /// Peaks of pairs order * probes + probe, in place of those known of them; points about them are
   /// sorted into the points.
   void find_peaks_of(const std::vector<std::size_t>& numbers, std::vector<SteadyPoint>& points);
+  /// The response keeps its sense across the peak.
+  bool is_bounded(const ResponsePeak& peak);
+  /// Takes out what stands at peaks without bound: rounding.
+  void drop_unbounded(std::vector<SteadyPoint>& points) const;
   /// Half-power points of a peak near the sample i.
   void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
   /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low
@@ -102,7 +111,8 @@ class UnbalanceSolver {
   HarmonicSolver solver_;
   /// What an order of the speed drives the unknowns with.
   VecXc force_of(std::size_t order, double Omega);
-  /// Of a rotor that breathes: amplitude of the speed itself, the others into p.
+  /// Of a rotor that breathes: amplitude of the speed itself, the others into p; NaN and p.found =
+  /// false where there is no periodic motion.
   VecXc breathe(double Omega, SteadyPoint& p);
   void put_multiple(const VecXc& a, SteadyPoint& p) const;
   /// At rest.

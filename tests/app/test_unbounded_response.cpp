@@ -1,0 +1,146 @@
+// Peaks that are poles: their height is where the search for it ends in rounding.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+namespace {
+
+std::string rotor(const std::string& of_shaft, double damping, const std::string& step) {
+  const std::string bearing = fmt::format(
+      "type = \"linear\"\nkyy = \"2e7 N/m\"\nkzz = \"2e7 N/m\"\ncyy = \"{0} N.s/m\"\nczz = \"{0} "
+      "N.s/m\"\n",
+      damping);
+  return "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 m/s^2\"\n[shaft]\nname = "
+         "\"r\"\nmaterial = "
+         "\"steel\"\n" +
+         of_shaft +
+         "[[disk]]\nname = \"d\"\nat = \"a:end\"\nmass = \"20 kg\"\nIp = \"0.4 kg.m^2\"\nId = "
+         "\"0.2 kg.m^2\"\n" +
+         "[[bearing]]\nat = \"a:start\"\n" + bearing + "[[bearing]]\nat = \"b:end\"\n" + bearing +
+         "[[unbalance]]\nat = \"d\"\namount = \"100 g.mm\"\nphase = \"30 deg\"\n[[probe]]\nname = "
+         "\"p\"\nat = "
+         "\"d\"\n[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\n" +
+         step;
+}
+
+const std::string round_shaft =
+    "columns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 400, 50], [\"b\", 600, "
+    "50]]\n";
+
+std::string flat_shaft() {
+  std::string s;
+  for (const auto& [name, length] : {std::pair{"a", 400}, {"b", 600}})
+    s += fmt::format(
+        "[[shaft.section]]\nname = \"{}\"\nlength = \"{} mm\"\n[shaft.section.general]\nA = \"1963 "
+        "mm^2\"\n"
+        "Iy = \"3.0e5 mm^4\"\nIz = \"3.6e5 mm^4\"\nJ = \"6.1e5 mm^4\"\nkappa_y = 0.89\nkappa_z = "
+        "0.89\n",
+        name, length);
+  return s;
+}
+
+std::vector<double> column(const Columns& c, const std::string& name) {
+  std::vector<double> out;
+  for (const auto& row : c.rows)
+    out.push_back(row[c.column(name)]);
+  return out;
+}
+
+}  // namespace
+
+TEST(UnboundedResponse, OfAnUndampedRotorIsSaid) {
+  double before = 0;
+  for (const int points : {21, 34, 101}) {
+    const DeckRun run(
+        rotor(round_shaft, 0,
+              fmt::format("speed = {{ start = \"500 rpm\", stop = \"5000 rpm\", points = {} }}\n",
+                          points)));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_TRUE(run.says("the response has no bound at")) << run.log;
+    EXPECT_TRUE(run.says("without bound at")) << run.log;
+    const Columns peaks = run.csv("u_peaks.csv");
+    ASSERT_EQ(peaks.rows.size(), 1u) << run.log;
+    EXPECT_TRUE(std::isnan(column(peaks, "amplitude [m]")[0]));
+    EXPECT_TRUE(std::isnan(column(peaks, "amplification factor [-]")[0]));
+    const double speed = column(peaks, "speed [rpm]")[0];
+    if (before > 0) EXPECT_NEAR(speed / before, 1.0, 1e-8);
+    before = speed;
+  }
+  const DeckRun critical(
+      rotor(round_shaft, 0,
+            "speed = { values = [\"500 rpm\"] }\n[[step]]\nname = \"c\"\ntype = "
+            "\"critical_speeds\"\nmax_speed = \"5000 rpm\"\nmotion = \"lateral\"\n"));
+  double nearest = 1.0;
+  for (const double x : column(critical.csv("c_damped.csv"), "speed [rpm]"))
+    nearest = std::min(nearest, std::abs(x / before - 1.0));
+  EXPECT_LT(nearest, 1e-6) << critical.log;
+}
+
+// The faintest damping bounds it: the amplitude is that of one mode, in proportion to 1/c.
+TEST(UnboundedResponse, FaintDampingBoundsIt) {
+  std::vector<double> size;
+  for (const double c : {1.0, 10.0, 100.0}) {
+    const DeckRun run(rotor(round_shaft, c,
+                            "speed = { start = \"500 rpm\", stop = \"5000 rpm\", points = 34 }\n"));
+    EXPECT_FALSE(run.says("no bound")) << run.log;
+    size.push_back(column(run.csv("u_peaks.csv"), "amplitude [m]").at(0));
+  }
+  EXPECT_NEAR(size[0] / size[1], 10.0, 1e-3);
+  EXPECT_NEAR(size[1] / size[2], 10.0, 1e-2);
+}
+
+// At an edge of its band an asymmetric rotor bends out.
+TEST(UnboundedResponse, NoPeakStandsAtTheEdgeOfABand) {
+  for (const int points : {41, 57}) {
+    const DeckRun run(
+        rotor(flat_shaft(), 2e3,
+              fmt::format("speed = {{ start = \"1000 rpm\", stop = \"4000 rpm\", points = {} }}\n",
+                          points)));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const Columns peaks = run.csv("u_peaks.csv");
+    for (const double a : column(peaks, "amplitude [m]"))
+      EXPECT_TRUE(std::isnan(a) || a < 0.1) << a << run.log;
+  }
+}
+
+// A speed without a periodic motion is a row without numbers, not the end of the step.
+TEST(UnboundedResponse, SpeedsWithoutAMotionLeaveTheOthersTheirRows) {
+  const std::string bearing =
+      "type = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = \"6e7 N/m\"\nkzz = \"4e7 N/m\"\ncyy = \"1e4 "
+      "N.s/m\"\nczz = \"1e4 "
+      "N.s/m\"\n";
+  const std::string deck =
+      "format = 1\n[output]\nreport = false\n[[shaft]]\nname = \"r\"\nmaterial = "
+      "\"steel\"\ncolumns = [\"name\", "
+      "\"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 500, 50], [\"b\", 100, 60], [\"c\", 600, "
+      "50]]\n[[disk]]\nname "
+      "= \"w\"\nat = \"b:end\"\nmass = \"40 kg\"\nIp = \"0.6 kg.m^2\"\nId = \"0.32 "
+      "kg.m^2\"\n[[bearing]]\nat = "
+      "\"a:start\"\n" +
+      bearing + "[[bearing]]\nat = \"c:end\"\n" + bearing +
+      "[[probe]]\nname = \"p\"\nat = \"b:start\"\n[[crack]]\nat = \"a:end - 60 mm\"\nto = \"a:end "
+      "- 20 "
+      "mm\"\nloss = 0.3\nbreathing = \"mayes\"\n[[unbalance]]\nat = \"w\"\namount = \"200 "
+      "g.mm\"\n[[step]]\nname "
+      "= \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"900 rpm\", \"2500 rpm\", "
+      "\"6000 rpm\"] }\n";
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns response = run.csv("u_response.csv");
+  for (const double asked : {900.0, 2500.0, 6000.0}) {
+    bool there = false;
+    for (const auto& row : response.rows)
+      there = there || (std::abs(row[0] - asked) < 1e-6 &&
+                        std::isfinite(row[response.column("p major [m]")]));
+    EXPECT_TRUE(there) << asked << run.log;
+  }
+}
