@@ -72,8 +72,24 @@ struct Contained {
   double mesh_error = 0;
 };
 
-/// Modes the motion can contain at the end of the run: up to twice the largest spin, and the four
-/// lowest in any case.
+/// Something may drive free motions: supports whose stiffness is not symmetric, a controller.
+bool may_grow(const system::System& system, const la::MCK& m) {
+  for (Index i = 0; i < system.nodes(); ++i)
+    if (system.node(i).signal) return true;
+  constexpr double rounding = 1e-9;
+  const la::BlockPattern& p = system.pattern();
+  for (Index i = 0; i < p.size(); ++i) {
+    const Matrix<6> K = m.K.block(p.diagonal(i));
+    // angles turned by moments have a skew part in any equilibrium
+    const Mat2 lateral = K.block<2, 2>(system::uy, system::uy);
+    if (std::abs(lateral(0, 1) - lateral(1, 0)) > rounding * lateral.cwiseAbs().maxCoeff())
+      return true;
+  }
+  return false;
+}
+
+/// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
+/// lowest in any case, and what grows.
 std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
                                          double largest_spin) {
   const run::Job& job = end.job;
@@ -88,6 +104,8 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
   }
   running.ratio.resize(at(job.system().lines()), 0.0);
   running.axially_free = job.built.axially_free;
+  for (const assembly::MagneticControl& c : job.built.magnetic_controls)
+    running.control_bandwidth = std::max(running.control_bandwidth, c.bandwidth);
   running.time = state.t;
   running.hysteretic = false;  // a motion in time has its stand-in
   analysis::EquilibriumOptions o;
@@ -95,13 +113,15 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
   analysis::Linearizer linear(job.system(), running, o);
   analysis::ModesOptions options;
   options.count = 8;
+  options.judge = may_grow(job.system(), linear.at(speed));
   const assembly::MeshError mesh(job.model, job.mesh, job.built);
   std::vector<double> spin;
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l)
     spin.push_back(speed * running.ratio[l]);
   std::vector<Contained> out;
   for (analysis::WhirlMode& m : analysis::whirl_modes(linear, speed, options)) {
-    if (!(m.frequency > 0.0) || (out.size() >= 4 && m.frequency > 2.0 * largest_spin)) continue;
+    const bool beyond = out.size() >= 4 && m.frequency > 2.0 * largest_spin;
+    if (!(m.frequency > 0.0) || (beyond && m.growth() <= 0)) continue;
     const double error = relative_mesh_error(mesh, linear.at(speed), m, spin);
     out.push_back({std::move(m), error});
   }
@@ -275,6 +295,7 @@ void AccuracyOutput::add_damping_row(TransientEnd& end, const analysis::WhirlMod
   // mode only the frequency counts
   const double decay = steps_.mean_decay(scheme.method, scheme.rho_inf, Complex(0.0, m.frequency));
   const double physical = tidy(m.damping_ratio), numerical = decay / m.frequency;
+  constexpr double resolved = 0.5;  // rad a step
   const double lost = 1.0 - std::exp(-std::max(decay, 0.0) * steps_.seconds());
   io::Value q;
   q["frequency [Hz]"] = to_hz(m.frequency);
@@ -285,6 +306,15 @@ void AccuracyOutput::add_damping_row(TransientEnd& end, const analysis::WhirlMod
                                  ? fmt::format("lateral, {}", analysis::to_string(m.direction))
                                  : std::string(analysis::to_string(m.kind));
   t.add({to_hz(m.frequency), motion, physical, numerical, lost});
+  if (const double growth = m.lambda.real();
+      m.growth() > 0 && decay > growth && growth * steps_.seconds() > 1.0)
+    warnings.push_back(
+        fmt::format("a motion at {:.4g} Hz grows by {:.3g} 1/s about the rotor's equilibrium at "
+                    "the end, and the "
+                    "steps, which do not resolve it, damp it by {:.3g} 1/s: the rotor is unstable "
+                    "though the run "
+                    "does not show it; try dt_max = \"{:.2g} ms\"",
+                    to_hz(m.frequency), growth, decay, 1e3 * resolved / m.frequency));
   // it matters when it is not small against the physical one, and has the time to show
   if (numerical > 0.1 * std::abs(physical) && lost > 0.01 &&
       m.frequency <= 1.2 * steps_.largest_spin())
