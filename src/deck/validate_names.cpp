@@ -95,6 +95,9 @@ void check_names(const model::Model& m, Problems& out) {
   check_file_names_of(m.steps, "step", out);
   check_file_names_of(m.probes, "probe", out);
   check_file_names_of(m.shafts, "shaft", out);
+  for (const model::Step& s : m.steps)
+    if (const auto* report_step = std::get_if<model::ApiLateralStep>(&s.law))
+      check_file_names_of(report_step->sets, "set", out);
   check_histories(m, out);
 }
 

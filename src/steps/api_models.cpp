@@ -1,4 +1,5 @@
 #include <steps/api_models.hpp>
+#include <core/text.hpp>
 
 #include <results/frequency.hpp>
 #include <results/support_coefficients.hpp>
@@ -44,13 +45,6 @@ std::vector<std::size_t> named_bearings(const model::Model& m, const model::Step
           "names of bearings as in the deck");
     out.push_back(static_cast<std::size_t>(found - m.bearings.begin()));
   }
-  return out;
-}
-
-std::string tag_of(const std::string& name) {
-  std::string out;
-  for (const char c : name)
-    out += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return out;
 }
 
@@ -136,7 +130,7 @@ std::vector<ApiMachine> api_machines(const model::Model& model, const run::RunOp
       throw report_error(step, "the deck of this run cannot be read again for its sets", "");
     try {
       out.push_back({set.name,
-                     tag_of(set.name),
+                     safe_stem(set.name),
                      set.change.empty() ? model : options.build(set.change),
                      {},
                      {},
