@@ -223,6 +223,23 @@ TEST_F(QueuedVtkFrames, AreTheSameFilesByteForByte) {
   EXPECT_EQ(file_count(dir_ / "queued/frames_line"), file_count(dir_ / "plain/frames_line"));
 }
 
+// What VTK has once in a process is set up once.
+TEST_F(QueuedVtkFrames, GoOnWhileOtherWritersAreMade) {
+  const auto plain = writer("plain"), queued = make_queued_frames(writer("queued"));
+  plain->begin(scene_);
+  queued->begin(scene_);
+  for (int k = 0; k < 100; ++k) {
+    offer(*queued, k);
+    writer("others")->begin(scene_);
+    offer(*plain, k);
+  }
+  queued->end();
+  for (int k = 0; k < 100; ++k) {
+    const std::string name = fmt::format("frames_surface/frame_{:06}.vtp", k);
+    EXPECT_TRUE(read_text(dir_ / "plain" / name) == read_text(dir_ / "queued" / name)) << name;
+  }
+}
+
 // A limit on file size stands for the full disk: orbits outgrow it.
 TEST_F(QueuedVtkFrames, AFullDiskIsTheSameError) {
   rlimit before{};

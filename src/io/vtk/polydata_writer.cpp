@@ -20,6 +20,7 @@
 #include <vtkTypeInt32Array.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <algorithm>
+#include <mutex>
 #include <optional>
 
 namespace whirl::io {
@@ -80,17 +81,23 @@ vtkSmartPointer<vtkStringArray> copy(const PolyData::Names& n) {
   return a;
 }
 
+/// Once in a process: another writer may be at work on a thread of its own.
+void set_up_library() {
+  vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
+  // threads for arrays of a few thousand numbers cost more than the numbers
+  // (and the backend of std::thread, which asks the system for the number of processors in every
+  // look at an array even while it does not work, is told once)
+  auto& smp = vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
+  smp.SetBackend("STDThread");
+  smp.Initialize(1);
+  smp.SetBackend("Sequential");
+}
+
 class Writer final : public PolyDataWriter {
  public:
   explicit Writer(Compression compression) {
-    vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
-    // threads for arrays of a few thousand numbers cost more than the numbers
-    // (and the backend of std::thread, which asks the system for the number of processors in every
-    // look at an array even while it does not work, is told once)
-    auto& smp = vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
-    smp.SetBackend("STDThread");
-    smp.Initialize(1);
-    smp.SetBackend("Sequential");
+    static std::once_flag done;
+    std::call_once(done, set_up_library);
     writer_->SetDataModeToAppended();
     writer_->EncodeAppendedDataOff();
     writer_->WriteToOutputStringOn();  // into a file it writes and seeks some 260 times
