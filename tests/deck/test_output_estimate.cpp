@@ -51,7 +51,9 @@ duration = "1 s"
   EXPECT_EQ(pictures("compression = \"lz4\""), lz4);
   EXPECT_GT(pictures("compression = \"none\""), 1.3 * lz4);
   EXPECT_LT(pictures("compression = \"zlib\""), 0.9 * lz4);
-  EXPECT_LT(pictures("format = \"vtkhdf\""), 0.9 * lz4);
+  EXPECT_LT(pictures("format = \"vtkhdf\""), 0.5 * lz4);
+  EXPECT_LT(pictures("format = \"vtkhdf\"\ncompression = \"none\""),
+            pictures("compression = \"none\""));
 }
 
 TEST(OutputEstimate, FramesAreCapped) {
