@@ -1,9 +1,12 @@
 // Every key of a deck matters: pairs of decks that differ in one key, and the number the second one
 // must then write, from a closed form. The list of keys is that of the program.
+#include "../deck/dump_model.hpp"
 #include "deck_run.hpp"
 #include "key_decks.hpp"
 #include "key_pairs.hpp"
 #include "written_decks.hpp"
+
+#include <deck/deck.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -1009,6 +1012,75 @@ TEST(KeysMatter, TheOtherDeckSaysWhatItsKeyIs) {
     EXPECT_FALSE(is_said(DeckRun(decks.at(s.deck)), s)) << of;
     EXPECT_TRUE(is_said(DeckRun(whirl::test::changed(decks, s.deck, s.from, s.to)), s)) << of;
   }
+}
+
+// With each key in its turn: what the program made of a deck, read again, is the same model.
+TEST(KeysMatter, TheResolvedDeckSaysTheSame) {
+  const whirl::test::Decks decks = all_decks();
+  const auto expect_same = [](const std::string& text, const std::string& of) {
+    const auto first = whirl::deck::read_deck_text(text, "d.toml");
+    ASSERT_TRUE(first.ok()) << of << first.report();
+    const auto second = whirl::deck::read_deck_text(first.model.resolved, "resolved.toml");
+    ASSERT_TRUE(second.ok()) << of << second.report();
+    EXPECT_EQ(whirl::ModelDump(first.model).text(), whirl::ModelDump(second.model).text()) << of;
+    EXPECT_EQ(first.model.resolved, second.model.resolved) << of;
+  };
+  for (const Pair& p : all_pairs())
+    expect_same(whirl::test::changed(decks, p.deck, p.from, p.to),
+                std::string(p.table) + " " + p.key + " in '" + p.deck + "'");
+  for (const auto& [name, deck] : decks)
+    expect_same(deck, name);
+}
+
+namespace {
+
+/// Defaults as the reference has them: "`"0 N"`" is "0 N"; words about a default are none.
+std::map<std::pair<std::string, std::string>, std::string> defaults_of_the_reference() {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("whirl_defaults_" + std::to_string(::getpid()));
+  std::map<std::pair<std::string, std::string>, std::string> out;
+  if (std::system(("'" WHIRL_EXE "' schema --reference >'" + file.string() + "'").c_str()) != 0)
+    return out;
+  std::ifstream in(file);
+  std::string table;
+  const std::regex row("^\\| `([^`]+)` \\| [^|]* \\| `([^`|]+)` \\|.*");
+  std::smatch found;
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("#"))
+      table = line.substr(line.find_first_not_of("# "));
+    else if (std::regex_match(line, found, row))
+      out[{table, found[1]}] = found[2];
+  std::filesystem::remove(file);
+  return out;
+}
+
+}  // namespace
+
+// A default that stands in a deck is the one that counts where the key is left out.
+TEST(KeysMatter, ADefaultWrittenOutChangesNothing) {
+  const whirl::test::Decks decks = all_decks();
+  const auto defaults = defaults_of_the_reference();
+  const auto read = [](const std::string& text) {
+    return whirl::deck::read_deck_text(text, "d.toml");
+  };
+  std::size_t tried = 0;
+  for (const Pair& p : all_pairs()) {
+    const auto found = defaults.find({p.table, p.key});
+    if (found == defaults.end()) continue;
+    const std::regex line("(^|\\n)" + std::string(p.key) + " = (\"[^\"]*\"|[-+.0-9a-z]+)(?=\\n|$)");
+    const std::string to = p.to, written = std::string("$1") + p.key + " = " + found->second;
+    if (!std::regex_search(to, line)) continue;
+    const auto deck = [&](const std::string& as) {
+      return read(whirl::test::changed(decks, p.deck, p.from, std::regex_replace(to, line, as)));
+    };
+    const auto without = deck("$1"), with = deck(written);
+    if (!without.ok()) continue;  // what stands beside it needs the key
+    ++tried;
+    const std::string of = std::string(p.table) + " " + p.key + " in '" + p.deck + "'";
+    EXPECT_TRUE(with.ok()) << of << with.report();
+    EXPECT_EQ(whirl::ModelDump(without.model).text(), whirl::ModelDump(with.model).text()) << of;
+  }
+  EXPECT_GT(tried, 40u);
 }
 
 // The list of keys is the program's: a new one needs a pair or a line in the list, and what is

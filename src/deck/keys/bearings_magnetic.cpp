@@ -170,8 +170,9 @@ void check(Visitor& v, const model::MagneticBearing& b) {
 void describe(Visitor& v, model::MagneticBearing& b) {
   v.quantity(required("current_stiffness"), b.per_current, "N/A", positive,
              "force for control current, of an axis in the middle of the gap");
-  v.quantity("bias_current", b.bias, "A", positive, "of the nonlinear force law; 0: it is linear");
-  v.quantity("gap", b.gap, "mm", positive,
+  v.quantity("bias_current", b.bias, "A", not_negative,
+             "of the nonlinear force law; 0: it is linear");
+  v.quantity("gap", b.gap, "mm", not_negative,
              "between poles and rotor in the middle, of the nonlinear force law");
   const bool stiffness = v.quantity(
       optional("position_stiffness", "current_stiffness bias_current/gap"), b.per_displacement,
