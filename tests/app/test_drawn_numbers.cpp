@@ -443,6 +443,13 @@ TEST(DrawnNumbers, OfATransientAreThoseOfItsTables) {
     from += from > 0;  // the turning point stands on one side
     expect_line(*c, line_of(amplitude, rpm, radius, {from, to}), c->name);
   }
+  // the peak of the summary, at the speed that the drive has then
+  const io::Value peak = run.summary("t").at("peaks").at("P");
+  const double when = peak.at("time [s]").number(),
+               wanted = when < 0.4 ? 300 + 3700 * when / 0.4 : 4000 - 2500 * (when - 0.4) / 0.2;
+  EXPECT_NEAR(peak.at("speed [rpm]").number(), wanted, 2e-4 * wanted);  // between two steps
+  const double highest = *std::max_element(radius.begin(), radius.end());
+  EXPECT_NEAR(1e3 * peak.at("about the place at the start [m]").number(), highest, 0.01 * highest);
   // ten turns about the largest radius
   const auto largest =
       static_cast<std::size_t>(std::max_element(radius.begin(), radius.end()) - radius.begin());
