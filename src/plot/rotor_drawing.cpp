@@ -173,9 +173,11 @@ void part_supports(const meshes::Mesh& mesh, const meshes::Scene& scene, Machine
   const auto radius = [](const MachineLine& l, double s, bool inner) {
     double r = 0;
     for (const DrawnSection& x : l.drawing.sections)
-      if (s >= x.s0 - 1e-9 && s <= x.s1 + 1e-9)
-        r = std::max(r, inner ? std::max(x.inner_left, x.inner_right)
-                              : std::max(x.outer_left, x.outer_right));
+      if (s >= x.s0 - 1e-9 && s <= x.s1 + 1e-9) {
+        const double f = x.s1 > x.s0 ? std::clamp((s - x.s0) / (x.s1 - x.s0), 0.0, 1.0) : 0.0;
+        r = std::max(r, inner ? std::lerp(x.inner_left, x.inner_right, f)
+                              : std::lerp(x.outer_left, x.outer_right, f));
+      }
     return r;
   };
   for (const meshes::SupportShape& b : scene.supports) {

@@ -245,6 +245,7 @@ TEST(RotorDrawing, MachineHasItsLinesWhereTheyStand) {
   EXPECT_NEAR(foot[0].y[0], 250, 1e-9);
   ASSERT_EQ(a.size(), 2u);  // each by itself here
   EXPECT_NEAR(a[0].x[0], 100, 1e-9);
+  EXPECT_NEAR(a[0].y[0], -25, 1e-9);  // half way along the cone
   ASSERT_TRUE(note(f, "wheel"));
   EXPECT_NEAR(note(f, "wheel")->y, 200, 1e-9);
   const plot::Series& centre = f.axes[0].series.back();
