@@ -243,6 +243,10 @@ const Said said[] = {
     {"campbell", "steps > c > linearised", "about the static equilibrium at each speed"},
     {"campbell", "steps > c > motion", "lateral"},
     {"campbell", "steps > c > type", "campbell"},
+    {"campbell", "steps > c > held > 0", "twist and axial motion without inertia"},
+    {"campbell", "steps > m > held > 0", "lateral and axial motion: the step takes torsional"},
+    {"ball bearing at its node", "steps > st > held > 0",
+     "angle of node at 0.1 m of shaft 'rotor': nothing else holds the turning of shaft 'rotor'"},
     {"campbell", "steps > m > modes > 0 > label", "torsional 1"},
     {"campbell", "steps > m > modes > 0 > kind", "torsional"},
     {"campbell", "steps > c > certificate > 0 > at", "at 0 rpm"},
@@ -367,7 +371,7 @@ directions = ["x", "y", "z", "ry", "rz"]
 name = "P"
 at = "b:end"
 [output]
-report = false
+report = true
 [[step]]
 name = "s"
 type = "static"
@@ -407,4 +411,94 @@ type = "static"
   EXPECT_EQ(value_at(v, "steps > 0 > type").text(), "static");
   EXPECT_EQ(n("output_frames"), 0);
   EXPECT_EQ(n("output_bytes"), 0);  // no histories
+  // both shafts are free to turn: each is held by itself
+  const Value held = run.summary("s").at("held");
+  ASSERT_EQ(held.items().size(), 2u);
+  std::ostringstream page;
+  page << std::ifstream(run.folder / "r" / "report.html").rdbuf();
+  const std::string text = page.str().substr(page.str().find("Held: "));
+  for (const std::size_t k : {0, 1}) {
+    const std::string shaft = k == 0 ? "'solid'" : "'hollow'";
+    EXPECT_NE(held.items()[k].text().find("the turning of shaft " + shaft), std::string::npos);
+  }
+  EXPECT_NE(text.find("'solid'; angle of node"), std::string::npos) << text.substr(0, 300);
+}
+
+// One section along two legs at a right angle, 0.6 m along x and 0.4 m along y, 20 mm thick.
+TEST(SummaryNumbers, OfACheckAreThoseOfABentPipe) {
+  const DeckRun run(R"(format = 1
+[[material]]
+name = "m"
+E = "200 GPa"
+nu = 0.3
+density = "8000 kg/m^3"
+[[shaft]]
+name = "pipe"
+material = "m"
+rotating = false
+path = [{ to = ["0.6 m", "0 m", "0 m"] }, { to = ["0.6 m", "0.4 m", "0 m"] }]
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 1000, 20]]
+[[bearing]]
+name = "wall"
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[output]
+report = false
+[[step]]
+name = "s"
+type = "static"
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const std::string command =
+      "cd '" + run.folder.string() + "' && '" WHIRL_EXE "' check --json d.toml > check.json";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const Value v =
+      tests::read_json(run.folder / "check.json").at("model").at("shafts").items().at(0);
+  const double each = 8000 * pi * 0.01 * 0.01, a = 0.6 * each, b = 0.4 * each, r2 = 0.01 * 0.01;
+  const auto rod = [r2](double mass, double length) {  // across
+    return mass * (3 * r2 + length * length) / 12;
+  };
+  const double x = (a * 0.3 + b * 0.6) / each, y = b * 0.2 / each;
+  const double Jxx = a * r2 / 2 + a * y * y + rod(b, 0.4) + b * (0.2 - y) * (0.2 - y),
+               Jyy =
+                   rod(a, 0.6) + a * (0.3 - x) * (0.3 - x) + b * r2 / 2 + b * (0.6 - x) * (0.6 - x),
+               Jzz = rod(a, 0.6) + a * ((0.3 - x) * (0.3 - x) + y * y) + rod(b, 0.4) +
+                     b * ((0.6 - x) * (0.6 - x) + (0.2 - y) * (0.2 - y));
+  EXPECT_NEAR(number_at(v, "mass_kg"), each, 1e-10);
+  EXPECT_NEAR(number_at(v, "length_m"), 1, 1e-12);
+  EXPECT_NEAR(number_at(v, "centre_x_m"), x, 1e-10);
+  EXPECT_NEAR(number_at(v, "Ip_kg_m2"), Jxx, 1e-9);
+  EXPECT_NEAR(number_at(v, "Id_kg_m2"), (Jyy + Jzz) / 2, 1e-9);
+}
+
+// 600 rpm forward to 600 rpm backward within 1 s: 2.5 turns on and back. The first passage of the
+// mark begins a turn, and one that the rotor has not ended when it turns round is none: the second
+// on and the first back are whole.
+TEST(SummaryNumbers, TurnsOfARotorThatTurnsRoundAreWhole) {
+  const DeckRun run(test::mass_on_springs(R"([[unbalance]]
+at = "mass"
+amount = "1 kg.mm"
+[output.tracking]
+orders = [1]
+[[drive]]
+at = "rotor/0 mm"
+type = "speed"
+speed = { type = "ramp", time = ["0 s", "1 s"], value = ["600 rpm", "-600 rpm"] }
+[[step]]
+name = "t"
+type = "transient"
+duration = "1 s"
+start = "rest"
+)"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns t = run.csv("t_tracking.csv");
+  const auto mark = [](double turns) { return 0.5 - std::sqrt(0.25 - turns / 10); };
+  const double middle = (mark(1) + mark(2)) / 2;
+  ASSERT_EQ(t.rows.size(), 2u);
+  EXPECT_NEAR(t.rows[0][0], middle, 1e-6);
+  EXPECT_NEAR(t.rows[1][0], 1 - middle, 1e-6);
+  EXPECT_GT(t.rows[0][t.column("speed [rpm]")], 300);
+  EXPECT_LT(t.rows[1][t.column("speed [rpm]")], -300);
 }

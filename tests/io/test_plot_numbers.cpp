@@ -340,6 +340,36 @@ TEST(PlotNumbers, OfOrbitsAndPaths) {
   }
 }
 
+// Of a thousandth to a hundred thousand million: three digits before the point at most, but for the
+// last step, and a second is never a kilosecond.
+TEST(PlotNumbers, UnitsOfEverySize) {
+  struct Unit {
+    const char* si;
+    double size, factor;
+    const char* name;
+  };
+  for (const Unit& u : {Unit{"N", 2e10, 1e-9, "GN"}, {"N", 9e9, 1e-6, "MN"},
+                        {"N", 2e7, 1e-6, "MN"},      {"N", 9e6, 1e-3, "kN"},
+                        {"N", 2e4, 1e-3, "kN"},      {"N", 9e3, 1, "N"},
+                        {"N", 0.2, 1, "N"},          {"N", 0.09, 1e3, "mN"},
+                        {"N", 2e-4, 1e3, "mN"},      {"N", 9e-5, 1e6, "µN"},
+                        {"N", 2e-7, 1e6, "µN"},      {"N", 9e-8, 1e9, "nN"},
+                        {"N m", 2e4, 1e-3, "kN·m"},  {"N.m", 5, 1, "N·m"},
+                        {"Pa", 2e7, 1e-6, "MPa"},    {"W", 2e4, 1e-3, "kW"},
+                        {"J", 2e-4, 1e3, "mJ"},      {"Hz", 2e4, 1e-3, "kHz"},
+                        {"s", 2e4, 1, "s"},          {"s", 0.05, 1e3, "ms"},
+                        {"s", 2e-5, 1e6, "µs"},      {"N", 0, 1, "N"},
+                        {"m/s", 0.4, 1e3, "mm/s"},   {"m/s", 0.6, 1, "m/s"},
+                        {"rad", 5, 1, "rad"},        {"m", 0.6, 1, "m"},
+                        {"m", 0.4, 1e3, "mm"},       {"m", 2e-3, 1e3, "mm"},
+                        {"m", 9e-4, 1e6, "µm"},      {"m", 2e-7, 1e6, "µm"},
+                        {"m", 9e-8, 1e9, "nm"},      {"m", 0, 1, "m"}}) {
+    const plot::DisplayUnit is = plot::unit_for(u.si, u.size);
+    EXPECT_EQ(is.name, u.name) << u.si << u.size;
+    EXPECT_NEAR(is.factor, u.factor, 1e-12 * u.factor) << u.si << u.size;
+  }
+}
+
 TEST(PlotNumbers, OfClearances) {
   const plot::ReachLine line{"rotor", {0, 0.5, 1}, {10e-6, 30e-6, 20e-6}};
   const plot::GapMark gaps[] = {{"seal", 0.25, 120e-6, 30e-6}, {"blade", 0.75, 200e-6, 50e-6}};
