@@ -149,4 +149,16 @@ TEST_F(FramesBeside, AFullDiskEndsTheRunAsItEndsOneThread) {
 }
 
 }  // namespace
+
+// HDF5 tried at the end of the process to write what the disk had refused, and crashed.
+TEST_F(FramesBeside, AFullDiskEndsARunIntoOneFileToo) {
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
+  write_deck("0.1 s", "every = \"0.1 ms\"\npoints_around = 1000\nformat = \"vtkhdf\"\n");
+  for (const int jobs : {1, 2}) {
+    EXPECT_EQ(run("-o r --quiet --jobs " + std::to_string(jobs), "trap '' XFSZ; ulimit -f 64; "),
+              5);
+    EXPECT_NE(log().find("E91"), std::string::npos) << log();
+  }
+}
+
 }  // namespace whirl::test

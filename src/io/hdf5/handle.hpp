@@ -14,6 +14,14 @@ inline std::mutex& library() {
   return one;
 }
 
+/// To be called before anything else on every thread. Failures are Errors, each thread has a stack of
+/// them of its own, and none is printed. At the end of the process the library does nothing: what could
+/// not be written (a full disk) it would try again there, and crash.
+inline void prepare_library() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 /// An HDF5 identifier and how to close it.
 class Handle {
  public:

@@ -135,7 +135,7 @@ class Series final : public PolyDataSeries {
  public:
   Series(const fs::path& path, bool packed, InArchive* earlier) : path_(path), packed_(packed) {
     const std::lock_guard lock(library());
-    be_quiet();
+    prepare_library();
     if (earlier)
       reopen(*earlier);
     else
@@ -152,7 +152,7 @@ class Series final : public PolyDataSeries {
   }
   void append(const PolyData& data, double time) override {
     const std::lock_guard lock(library());
-    be_quiet();
+    prepare_library();
     if (rows_.empty()) make_data_sets(data);
     if (topology_ != data.topology) {
       add_part(data);
@@ -170,7 +170,7 @@ class Series final : public PolyDataSeries {
   }
   void thin() override {
     const std::lock_guard lock(library());
-    be_quiet();
+    prepare_library();
     for (std::size_t k = 1; 2 * k < taken_.size(); ++k)
       taken_[k] = taken_[2 * k];
     taken_.resize((taken_.size() + 1) / 2);
@@ -201,10 +201,6 @@ class Series final : public PolyDataSeries {
   }
 
  private:
-  /// Failures are Errors. Each thread has a stack of them of its own, and frames are written by another
-  /// one than opens them.
-  static void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
   void create();
   void reopen(InArchive& earlier);
   void make_data_sets(const PolyData& data);

@@ -302,7 +302,7 @@ class Hdf5Series final : public TimeSeries {
   }
 
   void prepare(std::span<const Channel> channels) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    prepare_library();
     scale_.clear();
     for (const auto& c : channels)
       scale_.insert(scale_.end(), c.width(), c.scale);
@@ -434,7 +434,7 @@ class Hdf5Series final : public TimeSeries {
 
 void read(const fs::path& path, Columns& out) {
   const std::lock_guard lock(library());
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  prepare_library();
   const Opened o = open_series(path, false);
   const auto tail = read_tail(path, o, o.s[0]);
   const std::size_t rows = o.s[0] + tail.size() / o.width;
