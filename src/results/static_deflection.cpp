@@ -14,7 +14,7 @@ namespace whirl::results {
 
 namespace {
 
-constexpr int stretches = 8;  ///< of an element, between the points at which it is drawn
+constexpr int stretches = 8;  ///< of an element, between the points at which it is drawn; even
 
 /// How far the centre line of each element lies beside the cubic through its ends with the directors as
 /// slopes: what weight and shear add between nodes. With the exact section forces (section_results.hpp)
@@ -31,7 +31,7 @@ class BetweenNodes {
   Points of(std::size_t element) const;
 
  private:
-  static constexpr int inner = 2 * stretches - 1;  ///< ends and middle of every stretch
+  static constexpr int inner = stretches - 1;  ///< points between the ends of an element
   const run::Job& job_;
   std::vector<assembly::SectionPoint> forces_;
 };
@@ -52,11 +52,15 @@ BetweenNodes::Points BetweenNodes::of(std::size_t element) const {
     shear[k] = (p.force - p.force.dot(p.normal) * p.normal) / s.kGA;
   }
   Vec3 slope = Vec3::Zero();
-  for (std::size_t k = 0; k < stretches; ++k) {  // Simpson's rule
-    const Vec3 &a = bending[2 * k], &middle = bending[2 * k + 1], &b = bending[2 * k + 2];
-    const Vec3 by_shear = h / 6.0 * (shear[2 * k] + 4.0 * shear[2 * k + 1] + shear[2 * k + 2]);
-    out[k + 1] = out[k] + h * slope + h * h / 6.0 * (a + 2.0 * middle) + by_shear;
-    slope += h / 6.0 * (a + 4.0 * middle + b);
+  for (std::size_t k = 0; k < stretches; k += 2) {  // parabolas through three points
+    const Vec3 &a = bending[k], &m = bending[k + 1], &b = bending[k + 2];
+    const Vec3 &u = shear[k], &v = shear[k + 1], &w = shear[k + 2];
+    out[k + 1] = out[k] + h * slope + h * h / 24.0 * (7.0 * a + 6.0 * m - b) +
+                 h / 12.0 * (5.0 * u + 8.0 * v - w);
+    slope += h / 12.0 * (5.0 * a + 8.0 * m - b);
+    out[k + 2] = out[k + 1] + h * slope + h * h / 24.0 * (10.0 * m + 3.0 * b - a) +
+                 h / 12.0 * (8.0 * v + 5.0 * w - u);
+    slope += h / 12.0 * (8.0 * m + 5.0 * b - a);
   }
   const Vec3 end = out.back(), turn = (e.s2 - e.s1) * slope;
   for (std::size_t k = 0; k <= stretches; ++k) {
