@@ -73,16 +73,17 @@ struct Frames {
   bool at_most = false;  ///< there may be fewer
 };
 
-/// Turns of the reference in a transient step, where a drive prescribes them.
-std::optional<double> turns_of(const model::Model& m, const model::Step& s, double duration) {
+/// Turns of the reference between two times of a transient step, where a drive prescribes them.
+std::optional<double> turns_of(const model::Model& m, const model::Step& s, double from,
+                               double to) {
   for (const model::Drive& d : m.drives) {
     const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
     const double ratio = std::abs(m.shafts[d.at.shaft].speed_ratio);
     if (!p || !p->angle || !(ratio > 0) || (!d.step.empty() && d.step != s.name)) continue;
-    double angle = 0, last = p->angle->at(0.0).f;
+    double angle = 0, last = p->angle->at(from).f;
     constexpr int looks = 1000;  // it may turn back
     for (int k = 1; k <= looks; ++k) {
-      const double now = p->angle->at(duration * k / looks).f;
+      const double now = p->angle->at(std::lerp(from, to, static_cast<double>(k) / looks)).f;
       angle += std::abs(now - last);
       last = now;
     }
@@ -101,9 +102,9 @@ Frames frames_of(const model::Model& m, const model::VtkOutput& o, const model::
   if (o.every > 0)
     f.count = std::floor(window.length() / o.every) + 1;
   else if (o.frames_per_revolution > 0) {
-    const std::optional<double> turns = turns_of(m, s, t.duration);
+    const std::optional<double> turns =
+        turns_of(m, s, window.begin - run.begin, window.end - run.begin);
     f.at_most = !turns || share < 1;
-    // which turns a part of the run sees is for the run to find out
     f.count = turns ? *turns * o.frames_per_revolution + 1 : o.max_frames;
   } else
     f.count = o.frames;

@@ -67,7 +67,8 @@ struct CriticalMark {
   std::string label;
 };
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
-                     std::span<const double> orders, std::span<const CriticalMark> criticals);
+                     std::span<const double> orders, std::span<const CriticalMark> criticals,
+                     double reach = 0.0);
 /// Log decrement against speed, with the threshold at zero; enlarged about it where heavily damped
 /// modes take the scale.
 Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines,

@@ -109,7 +109,8 @@ std::string order_name(double order) { return number_text(order, 3) + "X"; }
 }  // namespace
 
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
-                     std::span<const double> orders, std::span<const CriticalMark> criticals) {
+                     std::span<const double> orders, std::span<const CriticalMark> criticals,
+                     double reach) {
   Figure f;
   f.name = std::move(name);
   f.title = std::move(title);
@@ -118,7 +119,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
   a.x = Axis("speed", "rpm");
   a.y = Axis("damped natural frequency", "Hz");
   a.x.include_zero = a.y.include_zero = true;
-  double top = 0, end = 0, start = 0;
+  double top = reach * hertz, end = 0, start = 0;
   std::array<bool, 4> used{};
   bool heavy = false;
   for (const auto& l : lines) {
@@ -136,9 +137,9 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
   a.y.max = top > 0 ? 1.06 * top : nan;
   for (const double order : orders) {
     if (!(end > 0 || start < 0) || !(order > 0)) continue;
-    const double reach = 1.06 * top / (order * hertz);
-    const double limit = std::min(end, reach);
-    const double back = std::min(-start, reach);  // shafts that turn the other way
+    const double at_top = 1.06 * top / (order * hertz);
+    const double limit = std::min(end, at_top);
+    const double back = std::min(-start, at_top);  // shafts that turn the other way
     Series s;
     s.x = {0, limit * rpm};
     s.y = {0, order * limit * hertz};

@@ -18,7 +18,8 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
   }
   const double target = std::clamp(length / spacing, length >= 140 ? 3.0 : 2.0, 10.0);
   if (s.log) return log_ticks(s.lo, s.hi, target);
-  if (a.unit == "°" || a.unit == "deg") return angle_ticks(s.lo, s.hi);
+  constexpr double few = 45.0;  // degrees, of which one multiple of 15 or two would be ticks
+  if ((a.unit == "°" || a.unit == "deg") && s.hi - s.lo >= few) return angle_ticks(s.lo, s.hi);
   return linear_ticks(s.lo, s.hi, target);
 }
 

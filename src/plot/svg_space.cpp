@@ -392,8 +392,10 @@ void SpaceDrawing::draw_curve(std::size_t i) {
          (s.closed_fill ? "data-quiet=\"1\" " : ""));
   if (s.closed_fill)
     c_.add(fill(color) + " fill-opacity=\"0.13\"");
-  else
+  else if (s.style.width > 0)
     c_.add(stroke(color, s.style.width, s.style.dash) + " stroke-linejoin=\"round\"");
+  else  // marks alone
+    c_.add("fill=\"none\"");
   if (s.style.opacity < 1) c_.attr("stroke-opacity", s.style.opacity);
   c_.add(" d=\"" + d + "\"/>\n");
   if (s.style.marker != Marker::none)

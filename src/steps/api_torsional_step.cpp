@@ -285,13 +285,13 @@ void TorsionalReport::add_interference() {
       }
     }
   }
-  plot::Figure f = plot::plot_campbell(s_.file("interference"), "Torsional interference diagram",
-                                       lines, orders, marks);
-  plot::Axes& a = f.axes.front();
   // modes far above all excitations would squeeze the lines they meet
   double highest = modes_.front().frequency;
   for (const Excitation& e : excitations_)
     highest = std::max(highest, e.over({0.0, top})[1]);
+  plot::Figure f = plot::plot_campbell(s_.file("interference"), "Torsional interference diagram",
+                                       lines, orders, marks, highest);
+  plot::Axes& a = f.axes.front();
   a.y.min = 0;
   a.y.max = 1.25 * to_hz(highest);
   for (const double Omega : law_.operating)
