@@ -90,7 +90,11 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E16", "duplicate name",
        "Two things of the same kind have the same name, so a reference to it would be ambiguous. "
        "Sections of different shafts may share a "
-       "name; it is then written shaft/section where it is used.",
+       "name; it is then written shaft/section where it is used. Results of steps, probes and "
+       "shafts stand "
+       "in files called after them, in which all but letters, digits, '-' and '_' becomes '_': "
+       "names that "
+       "become one there, or a transient 'x_modes' beside a modal step 'x', would write one file.",
        "[[disk]]\nname = \"impeller\"\n[[disk]]\nname = \"impeller\"   # wrong"},
       {"E17", "unknown name",
        "A material, shaft or step is named that the deck does not define. Built-in materials are "
@@ -554,7 +558,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The steady response to unbalance or to a harmonic force is a motion about the equilibrium. "
        "At a speed where free motions grow it is never reached: oil whirl, divergence or another "
        "motion takes its place. Looked at are the middle and the end of the range and the highest "
-       "response; a stability step finds the onset.",
+       "response; a stability step finds the onset. Where nothing damps a resonance its amplitude "
+       "has no "
+       "bound, and a cracked rotor has no periodic motion in its bands of instability.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W14", "a mean of a stiffness that turns",
        "The rotor has unequal principal stiffnesses or moments of inertia, or a crack. Modes, "
