@@ -402,6 +402,45 @@ void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds,
   }
 }
 
+/// A vector, its phase lag (rad) and the speed there, rpm.
+struct VectorPoint {
+  Complex vector;
+  double lag, speed;
+};
+
+/// Points of a vector that one can tell apart, with some between those at which the polygon has corners
+/// (once a turn of a fast run-up): on the cubic through neighbours (E. Catmull, R. Rom, 1974). Between
+/// vectors that turn by more than a right angle nothing is known, and the line stays straight.
+std::vector<VectorPoint> smooth_points(const ResponseCurve& c) {
+  std::vector<VectorPoint> p;
+  for (const std::size_t i : distinct_points(c))
+    p.push_back({std::polar(c.amplitude[i], c.phase_lag[i]), c.phase_lag[i], c.speed[i] * rpm});
+  const auto bend = [&](std::size_t i) {  // rad, of the polygon at a point; 0 at its ends
+    if (i == 0 || i + 1 >= p.size()) return 0.0;
+    const Complex a = p[i].vector - p[i - 1].vector, b = p[i + 1].vector - p[i].vector;
+    return std::abs(a) > 0.0 && std::abs(b) > 0.0 ? std::abs(std::arg(b / a)) : 0.0;
+  };
+  constexpr double corner = 0.2, unknown = 0.5 * pi;
+  constexpr int between = 5;
+  std::vector<VectorPoint> out;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    out.push_back(p[i]);
+    if (i + 1 == p.size()) break;
+    const double sharpest = std::max(bend(i), bend(i + 1));
+    if (!(sharpest > corner) || sharpest > unknown) continue;
+    const Complex a = p[i].vector, b = p[i + 1].vector;
+    const Complex slope_a = i > 0 ? 0.5 * (b - p[i - 1].vector) : b - a;
+    const Complex slope_b = i + 2 < p.size() ? 0.5 * (p[i + 2].vector - a) : b - a;
+    for (int k = 1; k <= between; ++k) {
+      const double x = static_cast<double>(k) / (between + 1), y = 1.0 - x;
+      const Complex v = y * y * (1.0 + 2.0 * x) * a + x * x * (1.0 + 2.0 * y) * b +
+                        x * y * (y * slope_a - x * slope_b);
+      out.push_back({v, p[i].lag + std::arg(v / a), std::lerp(p[i].speed, p[i + 1].speed, x)});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
@@ -422,10 +461,10 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
     Series s;
     s.label = c.label;
     Extra speed{"speed", "rpm", {}};
-    for (const std::size_t i : distinct_points(c)) {
-      s.x.push_back(c.phase_lag[i] * 180 / pi);
-      s.y.push_back(c.amplitude[i] * factor * u.factor);
-      speed.values.push_back(c.speed[i] * rpm);
+    for (const VectorPoint& p : smooth_points(c)) {
+      s.x.push_back(p.lag * 180 / pi);
+      s.y.push_back(std::abs(p.vector) * factor * u.factor);
+      speed.values.push_back(p.speed);
     }
     if (&c == &curves.front()) note_speeds(a, s, speed.values, marks);
     s.extra.push_back(std::move(speed));

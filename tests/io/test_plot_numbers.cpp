@@ -194,6 +194,27 @@ TEST(PlotNumbers, OfResponses) {
   }
 }
 
+// Vectors once a turn of a fast run-up, 30 degrees apart on a circle: what is put between them lies on it,
+// and the vectors themselves stay.
+TEST(PlotNumbers, BetweenVectorsFarApart) {
+  plot::ResponseCurve c{"y", {}, {}, {}};
+  for (int k = 0; k <= 12; ++k) {
+    c.speed.push_back((1000 + 10 * k) * rad_s);
+    c.amplitude.push_back(1e-5);
+    c.phase_lag.push_back(k * pi / 6);
+  }
+  const Figure f = plot::plot_polar("p", "p", std::span(&c, 1), Amplitude::zero_to_peak);
+  const plot::Series& s = f.axes.at(0).series.at(0);
+  ASSERT_EQ(s.x.size(), 12u * 6u + 1u);
+  for (std::size_t k = 0; k < s.x.size(); ++k) {
+    const bool own = k % 6 == 0, at_an_end = k < 6 || k > 66;
+    EXPECT_NEAR(s.y[k], 10.0, own ? 1e-9 : at_an_end ? 0.5 : 0.03) << k;
+    if (own) EXPECT_NEAR(s.x[k], 30.0 * static_cast<double>(k / 6), 1e-9) << k;
+    if (!own && !at_an_end) EXPECT_NEAR(s.x[k], 5.0 * static_cast<double>(k), 0.6) << k;
+    EXPECT_NEAR(s.extra.at(0).values[k], 1000 + 10.0 * static_cast<double>(k) / 6.0, 1e-6) << k;
+  }
+}
+
 // One line of 3 at 20 Hz, at 600 rpm, and of 1 at 1200 rpm; backward at -20 Hz.
 TEST(PlotNumbers, OfSpectraAgainstSpeed) {
   for (const bool full : {false, true}) {
