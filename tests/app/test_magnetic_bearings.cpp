@@ -2,6 +2,7 @@
 // motion against the exact solution of its linear equations, sensors elsewhere, a rotor that
 // spins, equilibria that only control holds, a drop, messages.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -509,4 +510,45 @@ TEST(MagneticBearings, AShaftInThePolesIsSaid) {
   const DeckRun strong(deck("15000"));
   EXPECT_FALSE(strong.says("of step 'st', whose air gap")) << strong.log;
   EXPECT_TRUE(strong.says("W11")) << strong.log;
+}
+
+// 30 N along y and the weight of 10 kg along z, held in the middle by the integral.
+TEST(MagneticBearings, CarryEachForceAlongItsOwnAxis) {
+  const DeckRun run(whirl::test::lateral_mass(10, "9.81 m/s^2", R"deck([[bearing]]
+name = "AMB"
+at = "mass"
+type = "magnetic"
+current_stiffness = "200 N/A"
+position_stiffness = "1e5 N/m"
+sensor_bandwidth = "500 Hz"
+amplifier_bandwidth = "300 Hz"
+delay = "200 us"
+[[bearing.control]]
+type = "pid"
+p = "5000 A/m"
+i = "2e4 A/(m.s)"
+d = "10 A.s/m"
+lag = "0.5 ms"
+[[load]]
+at = "mass"
+force = ["0 N", "30 N", "0 N"]
+[output]
+report = false
+[[step]]
+name = "st"
+type = "static"
+)deck",
+                                              R"("x", "rx", "ry", "rz")"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const whirl::io::Value force = run.summary("st").at("support forces [N]").at("AMB");
+  const double wanted[] = {0, -30, 98.1};
+  for (const std::size_t k : {0, 1, 2})
+    EXPECT_NEAR(force.items().at(k).number(), wanted[k], 1e-6) << k;
+  // i = F/k_i
+  EXPECT_NEAR(run.summary("st")
+                  .at("magnetic bearings")
+                  .at("AMB")
+                  .at("largest control current [A]")
+                  .number(),
+              98.1 / 200, 1e-6);
 }
