@@ -382,3 +382,24 @@ TEST(ReportTables, SayWhatTheyAreAbout) {
     expect_shown(all, {"three steps", "Clearances: u, response to unbalance", 0, column, unit, text,
                        "closed form"});
 }
+
+// Whatever table stands in the folder, the page leads to it.
+TEST(ReportTables, AreLinked) {
+  const auto decks = test::written_decks();
+  const std::set<std::string> open{"st_joints.csv", "t_peaks.csv"};  // stand in the page alone
+  std::size_t linked = 0;
+  for (const char* name : {"arms at rest", "ball bearing at its node", "campbell", "circle",
+                           "floating rings", "harmonic peaks", "modes", "operated at the peak",
+                           "orbits", "path", "speed-coupled", "struts", "tilting pads"}) {
+    const DeckRun run(with_report(decks.at(name)));
+    ASSERT_EQ(run.exit, 0) << name << "\n" << run.log;
+    const std::string page = text_of(run.folder / "r" / "report.html");
+    for (const auto& entry : fs::directory_iterator(run.folder / "r")) {
+      const std::string file = entry.path().filename().string();
+      if (entry.path().extension() != ".csv" || open.contains(file)) continue;
+      EXPECT_NE(page.find("href=\"" + file + "\""), std::string::npos) << name << ", " << file;
+      ++linked;
+    }
+  }
+  EXPECT_GT(linked, 30u);
+}
