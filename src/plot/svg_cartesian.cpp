@@ -244,9 +244,10 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
                   axis_title(a.x, p.tx.exponent), label_size, "middle", "data-label=\"x\"");
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
+    const double least = c.narrow ? 0.5 : 0.7;
     const double size =
         label_size *
-        std::clamp((b.h + 24) / std::max(1.0, wide_fonts * text_width(t, label_size)), 0.7, 1.0);
+        std::clamp((b.h + 24) / std::max(1.0, wide_fonts * text_width(t, label_size)), least, 1.0);
     c.text(x, y, t, size, "middle",
            "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) +
                " " + number_text(y) + ")\"");

@@ -303,9 +303,14 @@ void SpaceDrawing::draw_axis(Index d) {
   const std::string title = axis_title(*axis_[at(d)], ticks_[at(d)].exponent);
   if (d == 2) {
     const double x = edge.middle.x + reach * edge.ox - 6, y = edge.middle.y;
-    c_.text(x, y, title, label_size, "middle",
+    // what does not fit between the ends of the cell is set smaller
+    constexpr double least = 0.5;
+    const double room = 2.0 * std::min(y - cell_.y, cell_.bottom() - y);
+    const double full = wide_fonts * text_width(title, label_size);
+    const double share = std::clamp(room / std::max(1.0, full), least, 1.0);
+    c_.text(x, y, title, share * label_size, "middle",
             "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
-    const double length = wide_fonts * text_width(title, label_size);
+    const double length = share * full;
     labels_.push_back({x - 10, y - length / 2, 13, length});
     return;
   }

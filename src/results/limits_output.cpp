@@ -27,13 +27,24 @@ struct Extreme {
   }
 };
 
+/// A quantity at the last look.
+struct LastLook {
+  double value = nan, time = nan;
+  /// When it passed a limit, on its straight way to what it is now, s.
+  double passed(double limit, double now, double t) const {
+    if (std::isnan(value) || now == value) return t;
+    return std::lerp(time, t, std::clamp((limit - value) / (now - value), 0.0, 1.0));
+  }
+};
+
 /// The table of a bearing on its way.
 struct WatchedTable {
   std::size_t bearing;
   Index node;                                 ///< of the shaft
   double low, high, slack;                    ///< rad/s: beyond these it is held, and rounding
-  double begin = nan;                         ///< s: first step that ended beyond; NaN: none
+  double begin = nan;                         ///< s: when it first went beyond; NaN: never
   double least = infinity, most = -infinity;  ///< rad/s, of the shaft over the run
+  LastLook last{};
 };
 
 /// A gap or a film on its way.
@@ -46,7 +57,8 @@ struct Gap {
   bool film, magnet;
   double limit;        ///< m: displacement beyond which the law is not believed; infinite: none
   Extreme largest{};   ///< m
-  double begin = nan;  ///< s: first step that ended beyond
+  double begin = nan;  ///< s: when it first went beyond
+  LastLook last{};
 };
 
 /// Looks at the end of every accepted step at the supports that have a limit, and at nothing else.
@@ -106,31 +118,35 @@ void LimitWatch::look(const analysis::Snapshot& s) {
     const double spin = s.node(x.node).spin();
     x.least = std::min(x.least, spin);
     x.most = std::max(x.most, spin);
-    if (std::isnan(x.begin) && (spin < x.low - x.slack || spin > x.high + x.slack)) x.begin = s.t();
+    if (std::isnan(x.begin) && (spin < x.low - x.slack || spin > x.high + x.slack))
+      x.begin = x.last.passed(spin < x.low ? x.low : x.high, spin, s.t());
+    x.last = {spin, s.t()};
   }
   const assembly::NodeAt node = [&s](Index n) -> const system::NodeState& { return s.node(n); };
   for (Gap& x : gaps_) {
     const double displacement = x.reach(node);
     x.largest.take(displacement, s.t());
-    if (std::isnan(x.begin) && displacement > x.limit) x.begin = s.t();
+    if (std::isnan(x.begin) && displacement > x.limit)
+      x.begin = x.last.passed(x.limit, displacement, s.t());
+    x.last = {displacement, s.t()};
   }
 }
 
 void LimitWatch::save(OutArchive& out) const {
   for (const WatchedTable& x : tables_)
-    for (const double v : {x.begin, x.least, x.most})
+    for (const double v : {x.begin, x.least, x.most, x.last.value, x.last.time})
       out.put(v);
   for (const Gap& x : gaps_)
-    for (const double v : {x.begin, x.largest.value, x.largest.time})
+    for (const double v : {x.begin, x.largest.value, x.largest.time, x.last.value, x.last.time})
       out.put(v);
 }
 
 void LimitWatch::restore(InArchive& in) {
   for (WatchedTable& x : tables_)
-    for (double* v : {&x.begin, &x.least, &x.most})
+    for (double* v : {&x.begin, &x.least, &x.most, &x.last.value, &x.last.time})
       *v = in.number();
   for (Gap& x : gaps_)
-    for (double* v : {&x.begin, &x.largest.value, &x.largest.time})
+    for (double* v : {&x.begin, &x.largest.value, &x.largest.time, &x.last.value, &x.last.time})
       *v = in.number();
 }
 
