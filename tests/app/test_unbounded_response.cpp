@@ -72,7 +72,9 @@ TEST(UnboundedResponse, OfAnUndampedRotorIsSaid) {
     EXPECT_TRUE(std::isnan(column(peaks, "amplitude [m]")[0]));
     EXPECT_TRUE(std::isnan(column(peaks, "amplification factor [-]")[0]));
     const double speed = column(peaks, "speed [rpm]")[0];
-    if (before > 0) EXPECT_NEAR(speed / before, 1.0, 1e-8);
+    if (before > 0) {
+      EXPECT_NEAR(speed / before, 1.0, 1e-8);
+    }
     before = speed;
   }
   const DeckRun critical(

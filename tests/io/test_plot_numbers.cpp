@@ -209,8 +209,11 @@ TEST(PlotNumbers, BetweenVectorsFarApart) {
   for (std::size_t k = 0; k < s.x.size(); ++k) {
     const bool own = k % 6 == 0, at_an_end = k < 6 || k > 66;
     EXPECT_NEAR(s.y[k], 10.0, own ? 1e-9 : at_an_end ? 0.5 : 0.03) << k;
-    if (own) EXPECT_NEAR(s.x[k], 30.0 * static_cast<double>(k / 6), 1e-9) << k;
-    if (!own && !at_an_end) EXPECT_NEAR(s.x[k], 5.0 * static_cast<double>(k), 0.6) << k;
+    if (own) {
+      EXPECT_NEAR(s.x[k], 30.0 * static_cast<double>(k / 6), 1e-9) << k;
+    } else if (!at_an_end) {
+      EXPECT_NEAR(s.x[k], 5.0 * static_cast<double>(k), 0.6) << k;
+    }
     EXPECT_NEAR(s.extra.at(0).values[k], 1000 + 10.0 * static_cast<double>(k) / 6.0, 1e-6) << k;
   }
 }
