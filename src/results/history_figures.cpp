@@ -76,7 +76,7 @@ class HistoryFigures {
   void add_energies();
 
  private:
-  /// Of the kept rows about their place at the start: the static sag is not a vibration.
+  /// Of the kept rows about the middle of their orbit: neither sag nor drift is a vibration.
   struct Radii {
     std::vector<double> size;
     std::size_t largest = 0;  ///< row
@@ -101,7 +101,10 @@ class HistoryFigures {
   };
   const Turning& turning_of(const model::Probe& probe);
   Turning read_turning(const std::string& shaft) const;
-  Radii radii_of(std::size_t channel) const;
+  Radii radii_of(std::size_t channel, const Turning& turning) const;
+  std::vector<Vec2> middles_of_all(std::size_t channel) const;
+  std::vector<Vec2> means_of_two_turns(std::size_t channel,
+                                       const std::vector<double>& turned) const;
   static std::size_t turning_row(const Turning& turning);
   void add_amplitude(const std::string& probe, const Radii& radii, const Turning& turning,
                      const plot::DisplayUnit& unit);
@@ -201,21 +204,66 @@ void HistoryFigures::add_displacement(const model::Probe& probe) {
   }
   add(probe.name + "_history", probe.name + ": displacement", std::move(axes));
   if (m.width() != 2) return;
-  const Radii radii = radii_of(*channel);
   const Turning& turning = turning_of(probe);
+  const Radii radii = radii_of(*channel, turning);
   if (turning.speed_varies) add_amplitude(probe.name, radii, turning, unit);
   add_orbit(probe.name, *channel, radii.largest, turning, unit);
 }
 
-HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel) const {
+HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel, const Turning& turning) const {
+  std::vector<double> turned{0.0};  // through which angle up to each row, forward or backward
+  for (std::size_t r = 1; r < turning.phi.size(); ++r)
+    turned.push_back(turned.back() + std::abs(turning.phi[r] - turning.phi[r - 1]));
+  const bool turns = turned.size() == rows_.size() && turned.back() >= 2.0 * two_pi;
+  const std::vector<Vec2> centre =
+      turns ? means_of_two_turns(channel, turned) : middles_of_all(channel);
   const std::size_t y = place(channel);
-  const double y0 = rows_.front()[y], z0 = rows_.front()[y + 1];
   Radii radii;
-  for (const auto& r : rows_) {
-    radii.size.push_back(std::hypot(r[y] - y0, r[y + 1] - z0));
-    if (radii.size.back() > radii.size[radii.largest]) radii.largest = radii.size.size() - 1;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    radii.size.push_back((Vec2(rows_[r][y], rows_[r][y + 1]) - centre[r]).norm());
+    if (radii.size[r] > radii.size[radii.largest]) radii.largest = r;
   }
   return radii;
+}
+
+/// The middle of what a shaft that hardly turns passes through, for every row.
+std::vector<Vec2> HistoryFigures::middles_of_all(std::size_t channel) const {
+  Vec2 low = Vec2::Constant(infinity), high = Vec2::Constant(-infinity);
+  for (const auto& r : rows_) {
+    const Vec2 u(r[place(channel)], r[place(channel) + 1]);
+    low = low.cwiseMin(u);
+    high = high.cwiseMax(u);
+  }
+  return std::vector<Vec2>(rows_.size(), 0.5 * (low + high));
+}
+
+/// Means over a turn before and after every row (at the ends the two nearest turns), or over sixteen
+/// rows where those are more; by the trapezoidal rule in the angle turned, rad.
+std::vector<Vec2> HistoryFigures::means_of_two_turns(std::size_t channel,
+                                                     const std::vector<double>& turned) const {
+  const std::size_t y = place(channel), n = rows_.size();
+  std::vector<Vec2> sum{Vec2::Zero()};
+  for (std::size_t r = 1; r < n; ++r)
+    sum.push_back(sum.back() +
+                  0.5 * (turned[r] - turned[r - 1]) *
+                      Vec2(rows_[r][y] + rows_[r - 1][y], rows_[r][y + 1] + rows_[r - 1][y + 1]));
+  const auto sum_up_to = [&](double angle) -> Vec2 {
+    const auto after = std::lower_bound(turned.begin() + 1, turned.end() - 1, angle);
+    const auto r = static_cast<std::size_t>(after - turned.begin());
+    const double part = turned[r] - turned[r - 1],
+                 share = part > 0.0 ? (angle - turned[r - 1]) / part : 0;
+    return sum[r - 1] + share * (sum[r] - sum[r - 1]);
+  };
+  constexpr std::size_t few = 8;
+  std::vector<Vec2> means;
+  for (std::size_t r = 0; r < n; ++r) {
+    const double rows_wide =
+        0.5 * (turned[std::min(n - 1, r + few)] - turned[r - std::min(r, few)]);
+    const double half = std::min(std::max(two_pi, rows_wide), 0.5 * turned.back());
+    const double middle = std::clamp(turned[r], half, turned.back() - half);
+    means.push_back((sum_up_to(middle + half) - sum_up_to(middle - half)) / (2.0 * half));
+  }
+  return means;
 }
 
 /// Up to it the speed rises: the last row where it stays up. @pre the speed is recorded.
@@ -239,8 +287,9 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
                                    const Turning& turning, const plot::DisplayUnit& unit) {
   plot::Axes a;
   a.x = plot::Axis("spin" + turning.of, "rpm");
-  a.y = plot::Axis(fmt::format("radius about the start, {}", plot::to_string(convention_)),
-                   unit.name);
+  a.y = plot::Axis(
+      fmt::format("radius about the mean of two turns, {}", plot::to_string(convention_)),
+      unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
   const std::size_t top = turning_row(turning);

@@ -245,7 +245,7 @@ const Shown shown[] = {
     {"limited", damping, 1, "frequency", "Hz", "50.102", "lateral"},
     {"limited", damping, 1, "physical damping ratio", "-", "0.094868", "zeta"},
     {"limited", "Peaks", 0, "amplitude 0-peak", "mm", "1.2", "the limit"},
-    {"limited", "Peaks", 0, "motion 0-peak", "mm", "1.2", "from 0"},
+    {"limited", "Peaks", 0, "motion 0-peak", "µm", "600", "half the way"},
     {"limited", "Peaks", 0, "speed", "rpm", "0", "does not turn"},
     {"limited", "Peaks", 0, "time", "s", "0.0060575", "the first passage"},
     {"limited", "Peaks", 0, "motion at", "s", "0.0060575", "the first passage"},

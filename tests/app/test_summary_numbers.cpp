@@ -100,8 +100,7 @@ const Number numbers[] = {
     {"arms at rest", "steps > t > largest tilt > |gamma| [rad]", 0.4636476090, 1e-9, "atan 50/100"},
     {"arms at rest", "steps > t > peaks > disk du > amplitude 0-peak [m]", 0.1788854382, 1e-9,
      "as above"},
-    {"arms at rest", "steps > t > peaks > disk ds > about the place at the start [m]", 0, 1e-9,
-     "it rests"},
+    {"arms at rest", "steps > t > peaks > disk ds > motion 0-peak [m]", 0, 1e-9, "it rests"},
     {"arms at rest", "steps > t > t_end [s]", 1e-3, 1e-15, "asked for"},
     // 1 N m for 1 s on 0.1 kg m^2
     {"events", "steps > t > energy > stored at start [J]", 0, 1e-12, "at rest"},
@@ -120,7 +119,7 @@ const Number numbers[] = {
      "kinetic and spring"},
     {"limited", "steps > t > energy > dissipated [J]", 0.16736656194, 1e-6, "the difference"},
     {"limited", "steps > t > peaks > P > amplitude 0-peak [m]", 1.2e-3, 1e-9, "the limit"},
-    {"limited", "steps > t > peaks > P > about the place at the start [m]", 1.2e-3, 1e-9, "of 0"},
+    {"limited", "steps > t > peaks > P > motion 0-peak [m]", 0.6e-3, 1e-9, "half the way"},
     {"limited", "steps > t > peaks > P > time [s]", 6.0575050235066e-3, 1e-9, "the end"},
     {"limited", "steps > t > peaks > P > speed [rpm]", 0, 0, "does not turn"},
     // zeta = 10/(2 sqrt(1e4 0.1)) and 600/(2 sqrt(1e6 10)), w_n sqrt(1 - zeta^2)

@@ -66,18 +66,19 @@ void Recorder::restore(InArchive& in) {
 }
 
 PeakTracker::PeakTracker(const std::vector<std::pair<std::string, Point>>& points, Index reference,
-                         double t_from, bool motion)
-    : start_(motion ? points.size() : 0, Vec2::Zero()),
+                         double t_from, std::vector<Index> turns_of)
+    : turns_of_(std::move(turns_of)),
+      motions_(turns_of_.size()),
+      last_(turns_of_.size(), Vec2::Zero()),
       reference_(reference),
       t_from_(t_from) {
+  WHIRL_EXPECTS(turns_of_.empty() || turns_of_.size() == points.size());
   points_.reserve(points.size());
-  peaks_.reserve(points.size() + start_.size());
+  peaks_.reserve(points.size());
   for (const auto& [name, point] : points) {
     points_.push_back(point);
     peaks_.push_back({name, 0.0, 0.0, 0.0});
   }
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    peaks_.push_back(peaks_[i]);
 }
 
 void PeakTracker::begin(const Snapshot& s) {
@@ -88,7 +89,9 @@ void PeakTracker::begin(const Snapshot& s) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec2 u = displacement(s, points_[i]).tail<2>();
     peaks_[i].amplitude = u.norm();
-    if (!start_.empty()) start_[i] = u;
+    if (motions_.empty()) continue;
+    last_[i] = u;
+    motions_[i].begin(u, s.t(), s.total_phi(turns_of_[i]));
   }
 }
 
@@ -150,10 +153,18 @@ double reach_of(const std::array<std::vector<Vec2>, N>& seen, std::size_t point)
 }  // namespace
 
 void PeakTracker::look(StepAccess& s, int k) {
-  std::vector<Vec2>& seen = seen_[static_cast<std::size_t>(k)];
-  s.displacements(time_of(s, k), points_, seen);
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    seen.push_back(seen[i] - start_[i]);
+  s.displacements(time_of(s, k), points_, seen_[static_cast<std::size_t>(k)]);
+}
+
+void PeakTracker::widen(StepAccess& s) {
+  const Snapshot& end = s.end();
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const std::array<Vec2, OrbitWidth::looks> path{last_[i], seen_[2][i], seen_[4][i], seen_[6][i],
+                                                   seen_[8][i]};
+    motions_[i].step(path, s.t0(), s.t1());
+    motions_[i].turned_to(end.total_phi(turns_of_[i]), path.back(), s.t1());
+    last_[i] = path.back();
+  }
 }
 
 void PeakTracker::step(StepAccess& s) {
@@ -162,15 +173,9 @@ void PeakTracker::step(StepAccess& s) {
   // Four looks a step bracket a maximum; golden section finishes a new one.
   for (int k = 2; k < looks; k += 2)
     look(s, k);
+  if (!motions_.empty()) widen(s);
   bool complete = false;
-  const std::size_t n = points_.size();
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
-    if (i >= n && start_[i - n].isZero(0.0)) {  // about the axis it is the amplitude
-      peaks_[i].amplitude = peaks_[i - n].amplitude;
-      peaks_[i].time = peaks_[i - n].time;
-      peaks_[i].speed = peaks_[i - n].speed;
-      continue;
-    }
     double square = 0.0, where = looks - 1;
     for (int k = 2; k < looks; k += 2)
       if (const double r = seen_[static_cast<std::size_t>(k)][i].squaredNorm(); r > square) {
@@ -292,9 +297,11 @@ void PeakTracker::save(OutArchive& out) const {
     out.put(p.time);
     out.put(p.speed);
   }
-  for (const Vec2& u : start_)
-    for (const double x : u)
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    motions_[i].save(out);
+    for (const double x : last_[i])
       out.put(x);
+  }
 }
 
 void PeakTracker::restore(InArchive& in) {
@@ -303,9 +310,11 @@ void PeakTracker::restore(InArchive& in) {
     p.time = in.number();
     p.speed = in.number();
   }
-  for (Vec2& u : start_)
-    for (double& x : u)
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    motions_[i].restore(in);
+    for (double& x : last_[i])
       x = in.number();
+  }
 }
 
 void EnergyBalance::begin(const Snapshot& s) {

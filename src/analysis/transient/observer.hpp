@@ -3,6 +3,7 @@
 // that does not exist.
 #pragma once
 #include <analysis/transient/measurement.hpp>
+#include <analysis/transient/orbit_width.hpp>
 #include <core/archive.hpp>
 #include <algorithm>
 #include <array>
@@ -117,15 +118,17 @@ class PeakTracker final : public Observer {
   /// reference: node whose spin is the speed axis. All points share the looks at the dense output
   /// of a step, four of them and nine where one comes near its peak; between looks each point moves
   /// by the polynomial through them (a thousand points cost little more than one).
-  /// motion: each point a second time, about its place at the start; peaks() lists all points, then
-  /// all of these.
+  /// turns_of: for each point the node that turns with its shaft, for its motion apart from sag and
+  /// drift (OrbitWidth); empty: not asked for.
   PeakTracker(const std::vector<std::pair<std::string, Point>>& points, Index reference,
-              double t_from = -infinity, bool motion = false);
+              double t_from = -infinity, std::vector<Index> turns_of = {});
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
   void restore(InArchive& in) override;
   const std::vector<Peak>& peaks() const { return peaks_; }
+  /// Of each point, where the turns of its shaft are known.
+  const std::vector<OrbitWidth>& motions() const { return motions_; }
 
  private:
   static constexpr int looks = 9;  ///< at k/8 of the step, k = 0 .. 8
@@ -133,6 +136,7 @@ class PeakTracker final : public Observer {
     return k == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * k / (looks - 1);
   }
   void look(StepAccess& s, int k);
+  void widen(StepAccess& s);
   void refine(StepAccess& s, std::size_t point, double best, double where);
   /// Where in [a, b] the amplitude of a point has its maximum nearest to x, by Newton's iteration;
   /// -1 where that does not lead there.
@@ -141,7 +145,9 @@ class PeakTracker final : public Observer {
 
   std::vector<Point> points_;
   std::vector<Peak> peaks_;
-  std::vector<Vec2> start_;  ///< of the points, m; empty: their motion is not asked for
+  std::vector<Index> turns_of_;  ///< a node of each point; empty: their motion is not asked for
+  std::vector<OrbitWidth> motions_;
+  std::vector<Vec2> last_;  ///< where the points of motions_ were at the end of the last step, m
   Index reference_;
   double t_from_;
   std::array<std::vector<Vec2>, looks> seen_;  ///< lateral displacements of all points
