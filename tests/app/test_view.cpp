@@ -222,9 +222,10 @@ TEST(View, ParaViewShowsIt) {
   ASSERT_EQ(r.exit, 0) << r.log;
   if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
   ASSERT_EQ(view(r.folder, "r").exit, 0);
-  EXPECT_EQ(std::system(("cd '" + r.folder.string() +
-                         "' && timeout 100 xvfb-run -a pvbatch r/view.py p.png >log 2>&1")
-                            .c_str()),
-            0);
+  EXPECT_EQ(
+      std::system(("cd '" + r.folder.string() +
+                   "' && timeout 100 xvfb-run -a -s -noreset pvbatch r/view.py p.png >log 2>&1")
+                      .c_str()),
+      0);
   EXPECT_GT(std::filesystem::file_size(r.folder / "p.png"), 20000u);
 }

@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <string_view>
 
 namespace whirl::io {
 namespace {
@@ -81,6 +83,24 @@ vtkSmartPointer<vtkStringArray> copy(const PolyData::Names& n) {
   return a;
 }
 
+/// The same file with white space where readers of VTK want it. They look for the appended data in
+/// blocks of 4096 bytes and hand the tag that opens them to expat in pieces; expat 2.6, and older
+/// ones with the cure of CVE-2023-52425, look at a tag in pieces only when there is twice as much of
+/// it (https://gitlab.kitware.com/vtk/vtk/-/issues/19258). ParaView 5.12.0, and 5.11 of Debian 12,
+/// then take the data for XML. Where a block ends within the tag the rest comes byte by byte, and the
+/// tag is whole when it is twice as long.
+std::string readable_everywhere(std::string file) {
+  constexpr std::string_view tag = "<AppendedData encoding=\"raw\"", end_of_tag = "/>";
+  constexpr std::size_t block = 4096;
+  const std::size_t place = file.find(tag);
+  if (place == std::string::npos) return file;
+  const std::size_t tag_ends = place + tag.size();
+  const std::size_t before = (block - tag_ends % block) % block;
+  file.insert(tag_ends, tag.size() - end_of_tag.size(), ' ');
+  file.insert(place, before, ' ');
+  return file;
+}
+
 /// Once in a process: another writer may be at work on a thread of its own.
 void set_up_library() {
   vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
@@ -130,7 +150,7 @@ class Writer final : public PolyDataWriter {
       io_failure(file, std::string("VTK cannot write (") +
                            vtkErrorCode::GetStringFromErrorCode(code) + ")");
     AppendFile out(0);  // of a name of its own until it is whole
-    out.create(file, writer_->GetOutputString());
+    out.create(file, readable_everywhere(writer_->GetOutputString()));
     out.close();
   }
 
