@@ -127,6 +127,7 @@ class LineDrawing {
     for (Index k = line_.first_element; k < line_.first_element + line_.elements; ++k) {
       const Element& e = mesh_.elements[static_cast<std::size_t>(k)];
       add_piece(e.section, e.s1, e.left, e.right, e.xi1, e.xi2);
+      pieces_.back().shape.element = k;
       if (bent_) bend_last_piece(e);
     }
     for (const RigidPart& r : mesh_.rigid_parts)

@@ -2,6 +2,7 @@
 #include <core/contract.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 namespace whirl::meshes {
@@ -136,6 +137,20 @@ std::size_t Skin::add_station(Spot s) {
   return stations_.size() - 1;
 }
 
+/// Of a rigid part, from the nearest elements of the line to its left and right.
+Skin::Section Skin::section_of(const std::vector<ShaftPiece>& pieces, std::size_t k, double xi) {
+  if (const Index e = pieces[k].element; e >= 0) return {2 * e, 2 * e + 1, xi};
+  const auto elastic = [](const ShaftPiece& p) { return p.element >= 0; };
+  const auto here = pieces.begin() + static_cast<std::ptrdiff_t>(k);
+  const auto after = std::find_if(here, pieces.end(), elastic);
+  const auto before = std::find_if(std::make_reverse_iterator(here), pieces.rend(), elastic);
+  Section s{before == pieces.rend() ? -1 : 2 * before->element + 1,
+            after == pieces.end() ? -1 : 2 * after->element, xi};
+  if (s.left < 0) s.left = s.right;
+  if (s.right < 0) s.right = s.left;
+  return s;
+}
+
 void Skin::add_shaft(const Scene& scene, Index line, int part) {
   const auto& pieces = scene.lines[static_cast<std::size_t>(line)].pieces;
   std::size_t k = 0;
@@ -159,8 +174,10 @@ void Skin::add_shaft(const Scene& scene, Index line, int part) {
           station =
               add_station(make_spot(scene, line, p.left, p.right, xi, p.bend_left, p.bend_right));
         const double s = start + xi * length;
-        outside.push_back({station, s, p.outer_left + xi * (p.outer_right - p.outer_left)});
-        bore.push_back({station, s, p.inner_left + xi * (p.inner_right - p.inner_left)});
+        const Section section = section_of(pieces, k, xi);
+        outside.push_back(
+            {station, s, p.outer_left + xi * (p.outer_right - p.outer_left), section});
+        bore.push_back({station, s, p.inner_left + xi * (p.inner_right - p.inner_left), section});
       }
       start += length;
       ++k;
@@ -200,9 +217,9 @@ void Skin::revolve(const std::vector<Vertex>& profile, int part) {
     const double n_axial = -dr / l, n_radial = ds / l;
     const bool joined = last_vertex == i &&
                         std::abs(n_axial - last_axial) + std::abs(n_radial - last_radial) < 1e-9;
-    if (!joined) rings_.push_back({a.station, a.radius, n_axial, n_radial});
+    if (!joined) rings_.push_back({a.station, a.section, a.radius, n_axial, n_radial});
     const Index r0 = static_cast<Index>(rings_.size()) - 1;
-    rings_.push_back({b.station, b.radius, n_axial, n_radial});
+    rings_.push_back({b.station, b.section, b.radius, n_axial, n_radial});
     for (Index k = 0; k < around_; ++k) {
       const Index k1 = (k + 1) % around_;
       for (const Index q :
@@ -254,6 +271,17 @@ void Skin::centre_displacement(std::span<const Pose> nodes,
     for (Index k = 0; k < around_; ++k)
       for (int c = 0; c < 3; ++c)
         *p++ = static_cast<float>(u[c]);
+  }
+}
+
+void Skin::section_values(std::span<const double> at_ends, std::vector<float>& values) const {
+  values.resize(static_cast<std::size_t>(point_count()));
+  float* to = values.data();
+  for (const Ring& ring : rings_) {
+    const Section& s = ring.section;
+    const double x =
+        s.left < 0 ? 0.0 : (1 - s.xi) * at_ends[at(s.left)] + s.xi * at_ends[at(s.right)];
+    to = std::fill_n(to, around_, static_cast<float>(x));
   }
 }
 

@@ -34,6 +34,7 @@ struct ShaftPiece {
   Index bend_left = -1,
         bend_right =
             -1;  ///< axes of the line at its ends, into Scene::bends; -1: those of the line's triad
+  Index element = -1;  ///< of the mesh; -1: rigid
 };
 
 /// A disk, centred on its place. inner: the bore, usually the shaft radius.
@@ -160,16 +161,28 @@ class Skin {
               std::vector<float>& normals) const;
   /// Displacement of the centre line at each point's section, m: 3 floats a point.
   void centre_displacement(std::span<const Pose> nodes, std::vector<float>& displacement) const;
+  /// Values of the shaft's sections at each point: linear between the two ends of its element, of a
+  /// rigid part what the elements beside it have there; 0 on disks. at_ends: left and right of each
+  /// element of the mesh.
+  void section_values(std::span<const double> at_ends, std::vector<float>& values) const;
 
  private:
+  /// Numbers of the values at the ends of elements that a section's lies between; -1: it has none.
+  struct Section {
+    Index left = -1, right = -1;
+    double xi = 0;
+  };
   struct Ring {
     std::size_t station;
+    Section section;
     double radius, n_axial, n_radial;
   };
   struct Vertex {
     std::size_t station;
     double s, radius;
+    Section section{};
   };
+  static Section section_of(const std::vector<ShaftPiece>& pieces, std::size_t k, double xi);
   std::size_t add_station(Spot s);
   int add_part(const std::string& name);
   void add_shaft(const Scene& scene, Index line, int part);

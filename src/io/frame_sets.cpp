@@ -23,7 +23,19 @@ PolyData::Array array(std::string name, int components, std::size_t n) {
           std::vector<float>(n * static_cast<std::size_t>(components))};
 }
 
+/// The array behind the first `before`, of n values, is there or not.
+void keep_last(std::vector<PolyData::Array>& arrays, bool wanted, std::size_t before,
+               const char* name, int components, std::size_t n) {
+  if (wanted && arrays.size() == before) arrays.push_back(array(name, components, n));
+  if (!wanted) arrays.erase(arrays.begin() + static_cast<std::ptrdiff_t>(before), arrays.end());
+}
+
 Index line_of(const Scene& s, const Place& p) { return s.node_line[at(p.node)]; }
+
+bool knows_elements(const Scene& scene) {
+  return std::any_of(scene.lines.begin(), scene.lines.end(),
+                     [](const Scene::Line& l) { return !l.elements.empty(); });
+}
 
 class LineSet final : public FrameSet {
  public:
@@ -119,12 +131,26 @@ class LineSet final : public FrameSet {
     }
   }
 
+  /// Outer radii at both ends of the stretch between two points, m: of its piece of the shaft, so that a
+  /// step is a step.
+  static std::pair<double, double> radii_of(const Scene::Line& line, std::size_t k,
+                                            std::size_t next) {
+    const auto same = [](const Place& a, const Place& b) {
+      return a.node == b.node && a.offset == b.offset;
+    };
+    const auto piece = std::find_if(line.pieces.begin(), line.pieces.end(), [&](const auto& p) {
+      return same(p.left, line.points[k]) && same(p.right, line.points[next]);
+    });
+    if (piece != line.pieces.end()) return {piece->outer_left, piece->outer_right};
+    const double ra = k < line.radius.size() ? line.radius[k] : 0.0;
+    return {ra, next < line.radius.size() ? line.radius[next] : ra};
+  }
+
   /// A place in the stretch from point k to the next.
   void add_place(std::size_t l, std::size_t k, double xi) {
     const Scene::Line& line = scene_.lines[l];
     const std::size_t next = std::min(k + 1, line.points.size() - 1);
-    const double ra = k < line.radius.size() ? line.radius[k] : 0.0,
-                 rb = next < line.radius.size() ? line.radius[next] : ra;
+    const auto [ra, rb] = radii_of(line, k, next);
     const bool bent = scene_.bent(static_cast<Index>(l));
     places_.push_back(meshes::make_spot(scene_, static_cast<Index>(l), line.points[k],
                                         line.points[next], xi, bent ? line.bend_after[k] : -1,
@@ -136,9 +162,7 @@ class LineSet final : public FrameSet {
   /// Values at the ends of elements, where there are as many, else at nodes.
   template <class T>
   void add_sections(const char* name, std::span<const T> values) {
-    const bool known = std::any_of(scene_.lines.begin(), scene_.lines.end(),
-                                   [](const Scene::Line& l) { return !l.elements.empty(); });
-    if (!known)
+    if (!knows_elements(scene_))
       add(name, values);
     else
       put_array(name, values, [&](std::size_t i) -> T {
@@ -187,7 +211,9 @@ class LineSet final : public FrameSet {
 
 class SurfaceSet final : public FrameSet {
  public:
-  SurfaceSet(const Scene& scene, int points_around) : skin_(scene, points_around) {
+  SurfaceSet(const Scene& scene, int points_around)
+      : skin_(scene, points_around),
+        sections_known_(knows_elements(scene)) {
     const auto& q = skin_.quads();
     std::vector<std::int64_t> id(4);
     for (std::size_t k = 0; k < q.size(); k += 4) {
@@ -209,10 +235,14 @@ class SurfaceSet final : public FrameSet {
       skin_.set_chart(static_cast<Index>(l), f.state->charts[l]);
     skin_.update(f.drawn, data_.points, data_.point_data[0].floats());
     skin_.centre_displacement(f.true_poses, data_.point_data[1].floats());
+    const bool stressed = sections_known_ && !f.state->stress.empty();
+    keep_last(data_.point_data, stressed, 2, "von_mises [Pa]", 1, 0);
+    if (stressed) skin_.section_values(f.state->stress, data_.point_data[2].floats());
   }
 
  private:
   Skin skin_;
+  bool sections_known_;  ///< stresses of a state are those at the ends of elements
 };
 
 class SupportSet final : public FrameSet {
@@ -256,6 +286,8 @@ class SupportSet final : public FrameSet {
 
   void update(const FramePoses& f) override {
     std::size_t i = 0;
+    const bool moments = !f.state->support_moment.empty();
+    keep_last(data_.point_data, moments, 1, "moment [N m]", 3, count_);
     auto& force = data_.point_data[0].floats();
     for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
       const auto& s = scene_.supports[k];
@@ -271,6 +303,7 @@ class SupportSet final : public FrameSet {
       }
       const double r = s.radius > 0 ? s.radius : default_radius();
       if (!f.state->support_force.empty()) put(force, i, f.state->support_force[k]);
+      if (moments) put(data_.point_data[1].floats(), i, f.state->support_moment[k]);
       put(data_.points, i++, journal.r);
       // Springs do not turn with the shaft: axes at phi = 0.
       const Mat3 axes = section_axes(triad, journal.d, 0.0) * bend;
@@ -290,6 +323,8 @@ class SupportSet final : public FrameSet {
     }
     for (std::size_t k = 0; k < scene_.joints.size(); ++k) {
       if (!f.state->joint_force.empty()) put(force, i, f.state->joint_force[k]);
+      if (!f.state->joint_moment.empty())
+        put(data_.point_data[1].floats(), i, f.state->joint_moment[k]);
       put(data_.points, i++, place_of(f.drawn, scene_.joints[k]));
     }
   }

@@ -37,11 +37,11 @@ class FrameSet {
 /// Four segments between two nodes. Where section forces may jump a line ends and the next begins, each
 /// with a point of its own there.
 std::unique_ptr<FrameSet> make_line_set(const Scene& scene);
-/// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (each
-/// line and its disks).
+/// True surface: normals, displacement of the centre line, von_mises of the shaft's sections where the
+/// state has stresses at the ends of elements; cells: stripe (1 = painted), part (each line and its disks).
 std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around);
 /// Supports: housing ring, journal ring and springs between them; a vertex at each journal carries
-/// `force`; cell array `support` counts them. A joint is a vertex with its `force`, counted by the cell array
+/// `force` and, where any gives one, `moment`; cell array `support` counts them. A joint is a vertex with both, counted by the cell array
 /// `joint` (both -1 where a cell is not of that kind; `joint` is there where there are any).
 std::unique_ptr<FrameSet> make_support_set(const Scene& scene);
 /// Paths of the trail points so far: `age` s.

@@ -33,6 +33,8 @@ struct FrameState {
   std::span<const double> stress;       ///< Pa, equivalent (von Mises)
   std::span<const Vec3> support_force;  ///< N on the shaft, one a support of the scene
   std::span<const Vec3> joint_force;    ///< N on the line at `at`, one a joint of the scene
+  std::span<const Vec3> support_moment,
+      joint_moment;  ///< N m, about their places, in the same way; empty where none gives any
 };
 
 class FrameWriter {

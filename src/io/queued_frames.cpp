@@ -24,6 +24,8 @@ class OwnedFrame {
     copy(s.stress, stress_);
     copy(s.support_force, support_force_);
     copy(s.joint_force, joint_force_);
+    copy(s.support_moment, support_moment_);
+    copy(s.joint_moment, joint_moment_);
   }
 
   FrameState state() const {
@@ -38,6 +40,8 @@ class OwnedFrame {
     s.stress = stress_;
     s.support_force = support_force_;
     s.joint_force = joint_force_;
+    s.support_moment = support_moment_;
+    s.joint_moment = joint_moment_;
     return s;
   }
 
@@ -50,7 +54,8 @@ class OwnedFrame {
   double time_ = 0.0;
   std::vector<Pose> nodes_;
   std::vector<Mat3> charts_;
-  std::vector<Vec3> velocity_, angular_velocity_, force_, moment_, support_force_, joint_force_;
+  std::vector<Vec3> velocity_, angular_velocity_, force_, moment_, support_force_, joint_force_,
+      support_moment_, joint_moment_;
   std::vector<double> stress_;
 };
 

@@ -36,7 +36,14 @@ FrameArrays::FrameArrays(const run::Job& job)
       moment_(force_),
       supports_(job.model.bearings.size(), Vec3::Zero()),
       joints_(job.model.joints.size(), Vec3::Zero()),
-      stress_(force_.size(), 0.0) {}
+      stress_(force_.size(), 0.0) {
+  const auto gives_moment = [](const auto& x) { return static_cast<bool>(x.moment); };
+  if (std::ranges::any_of(job.built.support_forces, gives_moment) ||
+      std::ranges::any_of(job.built.joints, gives_moment)) {
+    support_moments_.resize(supports_.size());
+    joint_moments_.resize(joints_.size());
+  }
+}
 
 void FrameArrays::take_nodes(const assembly::NodeAt& node) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -59,13 +66,21 @@ void FrameArrays::take_sections(const std::vector<assembly::SectionPoint>& point
 
 void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Context& context,
                                 const assembly::ReactionAt& reaction) {
+  const bool moments = !support_moments_.empty() || !joint_moments_.empty();
+  std::ranges::fill(support_moments_, Vec3::Zero());
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     supports_[i].setZero();
-    for (const assembly::SupportForce& f : job_.built.support_forces)
-      if (f.name == job_.model.bearings[i].name) supports_[i] = f.force(node, context, reaction);
+    for (const assembly::SupportForce& f : job_.built.support_forces) {
+      if (f.name != job_.model.bearings[i].name) continue;
+      supports_[i] = f.force(node, context, reaction);
+      if (f.moment) support_moments_[i] = f.moment(node, context, reaction);
+    }
   }
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-    joints_[i] = job_.built.joints[i].force(node, context, reaction);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const assembly::JointResult& j = job_.built.joints[i];
+    joints_[i] = j.force(node, context, reaction);
+    if (moments) joint_moments_[i] = j.moment ? j.moment(node, context, reaction) : Vec3::Zero();
+  }
 }
 
 io::FrameState FrameArrays::state(double time, bool in_motion) const {
@@ -81,6 +96,8 @@ io::FrameState FrameArrays::state(double time, bool in_motion) const {
   frame.stress = stress_;
   frame.support_force = supports_;
   frame.joint_force = joints_;
+  frame.support_moment = support_moments_;
+  frame.joint_moment = joint_moments_;
   return frame;
 }
 

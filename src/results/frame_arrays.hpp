@@ -25,8 +25,8 @@ class FrameArrays {
   /// Section forces (N, N m, global axes: of the right part on the left one) and equivalent
   /// stresses (Pa) at both ends of every element.
   void take_sections(const std::vector<assembly::SectionPoint>& points);
-  /// Force of each bearing of the model on its shaft and of each joint on the line of its `at`, N, global
-  /// axes.
+  /// Force of each bearing of the model on its shaft and of each joint on the line of its `at`, N, and
+  /// moment about its place, N m; global axes.
   void take_supports(const assembly::NodeAt& node, const system::Context& context,
                      const assembly::ReactionAt& reaction);
 
@@ -37,7 +37,8 @@ class FrameArrays {
  private:
   const run::Job& job_;
   std::vector<io::Pose> poses_;
-  std::vector<Vec3> velocity_, omega_, force_, moment_, supports_, joints_;
+  std::vector<Vec3> velocity_, omega_, force_, moment_, supports_, joints_, support_moments_,
+      joint_moments_;  ///< the moments: none where no law gives any
   std::vector<double> stress_;
 };
 
