@@ -126,6 +126,69 @@ TEST_F(Frames, EveryMomentLeavesAnOpenableCollection) {
   }
 }
 
+// The first frame of a writer is VTK's; those after it are made from it. Each is what a writer of its own,
+// that is VTK, has as its first: bytes for bytes, with arrays of several blocks and arrays that come and
+// go.
+TEST_F(Frames, AreThoseOfVtkByteForByte) {
+  const Scene scene = small_rotor();
+  int folder = 0;
+  for (const Compression how : {Compression::none, Compression::lz4, Compression::zlib})
+    for (const int around : {32, 1500}) {
+      VtkFrameOptions o;
+      o.bearings = true;
+      o.compression = how;
+      o.points_around = around;
+      o.directory = dir_ / std::to_string(folder++);
+      const fs::path together = o.directory;
+      const auto w = make_vtk_frames(o);
+      w->begin(scene);
+      for (int k = 0; k < 7; ++k) {
+        const bool stressed = k != 3;
+        const double t = k == 5 ? 1e-300 : 0.013 * k;
+        write(*w, scene, t, stressed);
+        o.directory = dir_ / std::to_string(folder++);
+        const auto alone = make_vtk_frames(o);
+        alone->begin(scene);
+        write(*alone, scene, t, stressed);
+        for (const char* set : {"line", "surface", "bearings"}) {
+          const std::string name = fmt::format("frames_{}/frame_{:06}.vtp", set, k);
+          EXPECT_EQ(read_text(together / name),
+                    read_text(o.directory / fmt::format("frames_{}/frame_000000.vtp", set)))
+              << name << " of " << o.directory;
+        }
+      }
+    }
+}
+
+// Where a number is not one VTK writes the frame; those after it are as ever.
+TEST_F(Frames, WithoutAFiniteNumberAreThoseOfVtkToo) {
+  const Scene scene = small_rotor();
+  VtkFrameOptions o;
+  o.surface = false;
+  o.directory = dir_ / "together";
+  const auto w = make_vtk_frames(o);
+  w->begin(scene);
+  const auto put = [&](FrameWriter& to, int k) {
+    std::vector<Pose> p = poses_at(scene, 0.01 * k);
+    const std::vector<Vec3> v(3, Vec3(k == 1 ? nan : k == 2 ? infinity : 1.0, 2, 3));
+    FrameState s;
+    s.time = 0.01 * k;
+    s.nodes = p;
+    s.velocity = v;
+    to.frame(s);
+  };
+  for (int k = 0; k < 5; ++k) {
+    put(*w, k);
+    o.directory = dir_ / fmt::format("alone{}", k);
+    const auto alone = make_vtk_frames(o);
+    alone->begin(scene);
+    put(*alone, k);
+    EXPECT_EQ(read_text(dir_ / fmt::format("together/frames_line/frame_{:06}.vtp", k)),
+              read_text(o.directory / "frames_line/frame_000000.vtp"))
+        << k;
+  }
+}
+
 TEST_F(Frames, AreTheSameHoweverTheyArePacked) {
   const Scene scene = small_rotor();
   std::vector<std::uintmax_t> sizes;

@@ -1,4 +1,7 @@
-// The only file that sees VTK: .vtp by VTK's own XML writer, appended raw data.
+// .vtp by VTK's own XML writer, appended raw data; frames of the same cells after the first one of a
+// set by what VTK wrote of that.
+#include "frame_template.hpp"
+
 #include <core/plugin.hpp>
 #include <io/file.hpp>
 #include <io/polydata.hpp>
@@ -131,6 +134,8 @@ class Writer final : public PolyDataWriter {
   }
 
   void write(const std::filesystem::path& file, const PolyData& data, double time) override {
+    if (const std::string* known = of_template(data, time)) return put(file, *known);
+    template_.reset();
     if (topology_ != data.topology) take_cells(data);
     if (!fit(data.point_data, point_arrays_) || !fit(data.cell_data, cell_arrays_))
       make_arrays(data);
@@ -149,12 +154,23 @@ class Writer final : public PolyDataWriter {
     if (!ok)
       io_failure(file, std::string("VTK cannot write (") +
                            vtkErrorCode::GetStringFromErrorCode(code) + ")");
-    AppendFile out(0);  // of a name of its own until it is whole
-    out.create(file, readable_everywhere(writer_->GetOutputString()));
-    out.close();
+    const std::string text = readable_everywhere(writer_->GetOutputString());
+    put(file, text);
+    if (data.topology == 0)  // else every frame has cells of its own
+      template_.emplace(text, data, writer_->GetCompressor(), writer_->GetBlockSize());
   }
 
  private:
+  static void put(const std::filesystem::path& file, const std::string& text) {
+    AppendFile out(0);  // of a name of its own until it is whole
+    out.create(file, text);
+    out.close();
+  }
+  /// Null: VTK writes this one.
+  const std::string* of_template(const PolyData& data, double time) {
+    const bool known = template_ && topology_ == data.topology && template_->fits(data);
+    return known ? template_->fill(data, time) : nullptr;
+  }
   void set_compression(Compression compression) {
     switch (compression) {
       case Compression::none: writer_->SetCompressorTypeToNone(); break;
@@ -205,6 +221,7 @@ class Writer final : public PolyDataWriter {
   vtkNew<vtkPoints> points_;
   std::vector<vtkSmartPointer<vtkDataArray>> point_arrays_, cell_arrays_;
   std::optional<std::uint64_t> topology_;
+  std::optional<FrameTemplate> template_;
 };
 
 }  // namespace
