@@ -218,6 +218,8 @@ TEST(View, ParaViewShowsIt) {
   // where ParaView is installed: it does not go together with VTK's own packages on Debian 12
   if (std::system("command -v pvbatch >/dev/null && command -v xvfb-run >/dev/null") != 0)
     GTEST_SKIP() << "no ParaView (pvbatch, xvfb-run)";
+  if (std::system("pvbatch find_paraview.py >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "ParaView without its Python module";
   const DeckRun r(deck);
   ASSERT_EQ(r.exit, 0) << r.log;
   if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
