@@ -33,6 +33,42 @@ std::vector<fs::path> good_decks() {
   return r;
 }
 
+// Members without a name have the one that messages give them; a name given to another is skipped.
+TEST(Reader, MembersWithoutANameAreSetByTheOneTheyGet) {
+  const std::string text = R"(format = 1
+[[shaft]]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 300, 40], ["b", 200, 50]]
+[[disk]]
+name = "disk 2"
+at = "a:start"
+mass = "1 kg"
+[[disk]]
+at = "a:end"
+mass = "2 kg"
+[[disk]]
+at = "b:end"
+mass = "3 kg"
+[[unbalance]]
+at = "a:end"
+amount = "10 g.mm"
+[[step]]
+type = "modal"
+)";
+  const auto d = read(text, {"unbalance.unbalance 1.amount = 20 g.mm", "disk.disk 3.mass = 7 kg",
+                             "disk.disk 4.mass = 8 kg", "disk.disk 2.mass = 6 kg",
+                             "shaft.shaft.material = aluminium"});
+  ASSERT_TRUE(d.diagnostics.empty()) << d.diagnostics.front().message;
+  EXPECT_DOUBLE_EQ(d.model.unbalances.at(0).amount, 20e-6);
+  std::vector<std::pair<std::string, double>> masses;
+  for (const auto& disk : d.model.disks)
+    masses.emplace_back(disk.name, disk.mass);
+  const std::vector<std::pair<std::string, double>> wanted{
+      {"disk 2", 6}, {"disk 3", 7}, {"disk 4", 8}};
+  EXPECT_EQ(masses, wanted);
+}
+
 }  // namespace
 
 // Hz, rpm and rad/s say the same thing wherever a frequency is asked for; the model keeps rad/s.

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <system_error>
+#include <utility>
 
 namespace whirl::deck {
 namespace {
@@ -206,7 +207,8 @@ class Override {
       diagnostics_.error("E34", spot(0, equal_), "the path has an empty part");
       return nullptr;
     }
-    if (at.is_array()) return into_list(at, part, begin, end);
+    const std::string above = std::exchange(above_, part);
+    if (at.is_array()) return into_list(at, above, part, begin, end);
     if (at.is_table()) return into_table(at, part, begin, end);
     diagnostics_.error(
         "E34", spot(begin, end),
@@ -214,18 +216,33 @@ class Override {
     return nullptr;
   }
 
-  Value* into_list(Value& at, const std::string& part, std::size_t begin, std::size_t end) {
+  /// Names of the tables in a list, as the reader has them: given, or the kind and a number.
+  static std::vector<std::string> names_of(const Value& list, const std::string& kind) {
+    std::vector<std::string> names;
+    for (const Value& item : list.items) {
+      if (!item.is_table()) return {};
+      const Member* given = item.find("name");
+      std::string name = given && given->value.is_text() ? given->value.text : "";
+      for (std::size_t k = names.size() + 1;
+           name.empty() || (!given && std::find(names.begin(), names.end(), name) != names.end());
+           ++k)
+        name = fmt::format("{} {}", kind, k);
+      names.push_back(std::move(name));
+    }
+    if (kind == "shaft" && !names.empty() && names.front() == "shaft 1") names.front() = "shaft";
+    return names;
+  }
+
+  /// above: the name of the list.
+  Value* into_list(Value& at, const std::string& above, const std::string& part, std::size_t begin,
+                   std::size_t end) {
     Value* found = nullptr;
     std::size_t index = 0;
     const auto r = std::from_chars(part.data(), part.data() + part.size(), index);
     const bool number = r.ec == std::errc() && r.ptr == part.data() + part.size();
-    std::vector<std::string> names;
-    for (auto& item : at.items) {
-      const Member* name = item.is_table() ? item.find("name") : nullptr;
-      if (!name || !name->value.is_text()) continue;
-      names.push_back(name->value.text);
-      if (name->value.text == part) found = &item;
-    }
+    const std::vector<std::string> names = names_of(at, above);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (names[k] == part) found = &at.items[k];
     if (!found && number && index < at.items.size()) found = &at.items[index];
     if (!found) {
       const auto near = nearest(part, names);
@@ -261,6 +278,7 @@ class Override {
   int source_, line_;
   Diagnostics& diagnostics_;
   std::size_t equal_ = 0;  ///< place of the '='
+  std::string above_;      ///< the part of the path before this one
   Value value_;
 };
 
