@@ -2,6 +2,7 @@
 // numerical against physical damping, warnings.
 #include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/study/scheme_damping.hpp>
+#include <assembly/element_section.hpp>
 #include <core/rotation.hpp>
 #include <results/frequency.hpp>
 #include <results/mesh_accuracy.hpp>
@@ -17,9 +18,31 @@ namespace whirl::results {
 
 namespace {
 
+/// Of a mesh element, N m/rad.
+double torsional_stiffness(const model::Model& m, const meshes::Element& e) {
+  const model::Section& section = m.shafts[at(e.line)].sections[e.section];
+  if (section.general) return m.materials[section.material].G * section.general->J / (e.s2 - e.s1);
+  return assembly::element_constants(m, e).GJ_l;
+}
+
+/// Nodes whose angle a drive prescribes.
+std::vector<analysis::EnergyBalance::Driven> driven_nodes(const run::Job& job) {
+  std::vector<analysis::EnergyBalance::Driven> driven;
+  for (const assembly::TurnCount& count : job.built.turn_counts) {
+    if (!count.angle) continue;
+    double stiffness = 0;
+    for (const meshes::Element& e : job.mesh.elements)
+      if (e.left.node == count.node || e.right.node == count.node)
+        stiffness += torsional_stiffness(job.model, e);
+    driven.push_back({count.node, stiffness});
+  }
+  return driven;
+}
+
 class EnergyOutput final : public TransientOutput {
  public:
-  explicit EnergyOutput(const TransientSetup& s) : balance_(s.integration.breakpoints) {}
+  explicit EnergyOutput(const TransientSetup& s)
+      : balance_(s.integration.breakpoints, driven_nodes(s.job)) {}
   const analysis::EnergyBalance& balance() const { return balance_; }
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {

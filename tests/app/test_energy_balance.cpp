@@ -286,3 +286,34 @@ TEST(EnergyBalance, AJumpOfThePrescribedSpeedIsSupplied) {
   expect_closed(e);
   EXPECT_GT(e.supplied, 1000.0);  // 0.3 kg m2 at 900 rpm
 }
+
+// What a drive supplies to a rotor that only turns is rounding: of large angles on a stiff shaft.
+TEST(EnergyBalance, UndisturbedRotationIsNoAlarm) {
+  for (const char* speed : {"300 rpm", "30000 rpm"})
+    for (const char* duration : {"0.05 s", "5 s"})
+      for (const char* diameter : {"10", "200"}) {
+        const DeckRun d(
+            std::string("format = 1\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = \"r\"\n"
+                        "material = \"steel\"\ncolumns = [\"name\", \"length[mm]\", "
+                        "\"od[mm]\"]\nrows = [[\"a\", 500, ") +
+            diameter +
+            "]]\n[[bearing]]\nat = \"a:start\"\ntype = \"linear\"\nkyy = \"1e7 N/m\"\nkzz = "
+            "\"2e7 N/m\"\n[[bearing]]\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"1e7 N/m\"\n"
+            "kzz = \"2e7 N/m\"\n[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"" +
+            speed + "\"\n[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"" + duration +
+            "\"\n[output]\nreport = false\ncsv = false\n");
+        ASSERT_EQ(d.exit, 0) << d.log;
+        EXPECT_FALSE(d.says("energy balance")) << d.log;
+      }
+}
+
+// Steps of a tenth of a turn with a scheme that damps: the amplitude is not to be trusted, and said so.
+TEST(EnergyBalance, LongStepsAreAnAlarm) {
+  std::string text = rotor(springs, constant_speed, "");
+  const std::string careful = "integrator = { tolerance = 1e-6 }";
+  text.replace(text.find(careful), careful.size(),
+               "integrator = { method = \"generalized_alpha\", rho_inf = 0.2, dt = \"2 ms\" }");
+  const DeckRun d(text);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("do not trust the amplitudes")) << d.log;
+}

@@ -361,8 +361,19 @@ void EnergyBalance::step_by_residual(StepAccess& s, double work) {
   dissipated_ += lost;
   supplied_ += (stored - e1_) + lost - work;
   e1_ = stored;
-  rounding_ += 20 * 2.2e-16 * std::max(std::abs(stored), e.kinetic);
+  add_rounding(s, stored, e.kinetic);
   look({stored, e.kinetic});
+}
+
+void EnergyBalance::add_rounding(StepAccess& s, double stored, double kinetic) {
+  constexpr double last_digit = 2.2e-16;
+  rounding_ += 20 * last_digit * std::max(std::abs(stored), kinetic);
+  for (const Driven& d : driven_) {
+    const auto& node = s.end().node(d.node);
+    const double turned = std::abs(node.spin()) * (s.t1() - s.t0());
+    const double angle = std::abs(node.phi) + turned;  // without the whole turns before the step
+    rounding_ += 2 * last_digit * angle * d.stiffness * turned;
+  }
 }
 
 void EnergyBalance::step(StepAccess& s) {
@@ -385,7 +396,7 @@ void EnergyBalance::step(StepAccess& s) {
   supplied_ += h * b[2] * p.supplied;
   dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
-  rounding_ += 20 * 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
+  add_rounding(s, p.stored, p.kinetic);
   look(p);
   if (!jump) return;
   const double after = s.end().power().stored;

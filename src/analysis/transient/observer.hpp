@@ -162,8 +162,16 @@ class PeakTracker final : public Observer {
 /// energy it brings counts as supplied.
 class EnergyBalance final : public Observer {
  public:
+  /// A node whose angle is prescribed: its torque is known to the rounding of angles times the
+  /// torsional stiffness of the shaft beside it, N m/rad.
+  struct Driven {
+    Index node;
+    double stiffness;
+  };
   /// jumps: times, increasing, at which laws jump and steps end.
-  explicit EnergyBalance(std::vector<double> jumps = {}) : jumps_(std::move(jumps)) {}
+  explicit EnergyBalance(std::vector<double> jumps = {}, std::vector<Driven> driven = {})
+      : jumps_(std::move(jumps)),
+        driven_(std::move(driven)) {}
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -186,11 +194,14 @@ class EnergyBalance final : public Observer {
   /// film's clearance).
   bool known() const { return known_; }
   /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum
-  /// over elements, a step.
+  /// over elements, a step; and the work of what is rounding in the torques that hold prescribed
+  /// angles.
   double rounding() const { return rounding_; }
 
  private:
   std::vector<double> jumps_;
+  std::vector<Driven> driven_;
+  void add_rounding(StepAccess& s, double stored, double kinetic);
   /// Where the power supplied is what closes the balance but for the work of the residual, its
   /// integral is known without it.
   void step_by_residual(StepAccess& s, double work);
