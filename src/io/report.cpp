@@ -39,6 +39,7 @@ struct ShownColumn {
   plot::DisplayUnit unit{1.0, ""};
   double zero_below = 0;  ///< what is smaller is rounding
   bool units = false;     ///< its cells are units
+  bool is_long = false;   ///< a text in it takes a line of its own in a card
 };
 
 /// Largest number of a column and of those beside it in the same unit: lowest and highest, from and
@@ -102,6 +103,7 @@ std::string cell_html(const Table::Cell& c, const ShownColumn& column,
   const std::string kind = c.mark == Mark::passed   ? "passed"
                            : c.mark == Mark::failed ? "failed"
                            : column.numeric         ? "n"
+                           : column.is_long         ? "long"
                                                     : "";
   std::string text = c.is_text              ? escape(column.units ? printed_unit(c.text) : c.text)
                      : std::isnan(c.number) ? no_number
@@ -146,10 +148,9 @@ std::size_t longest_word(const std::string& text) {
   return longest;
 }
 
-/// Size of the letters that let a table stand on a printed page 182 mm wide; empty: the usual one.
-std::string print_size(const Table& t, const std::vector<ShownColumn>& columns) {
-  constexpr double page = 510, usual = 8, least = 3.5;  // pt
-  double width = 0;                                     // em
+/// A table is no narrower, em of its letters: texts break between words, numbers nowhere.
+double least_width(const Table& t, const std::vector<ShownColumn>& columns) {
+  double width = 0;
   for (std::size_t k = 0; k < t.columns.size(); ++k) {
     std::size_t letters =
         std::max(longest_word(t.columns[k].name), letters_of(printed_unit(columns[k].unit.name)));
@@ -160,8 +161,52 @@ std::string print_size(const Table& t, const std::vector<ShownColumn>& columns) 
       }
     width += 0.58 * static_cast<double>(letters) + 0.75;
   }
+  return width;
+}
+
+/// Size of the letters that let a table so wide stand on a printed page 182 mm wide; empty: the
+/// usual one.
+std::string print_size(double width) {
+  constexpr double page = 510, usual = 8, least = 3.5;  // pt
   if (width * usual <= page) return {};
-  return " style=\"--print:" + readable(std::max(least, page / width), 2) + "pt\"";
+  return "--print:" + readable(std::max(least, page / width), 2) + "pt;";
+}
+
+/// Has a telephone no room for a table so wide?
+bool needs_cards(double width) {
+  constexpr double room = 315, letters = 12;  // px
+  return width * letters > room;
+}
+
+/// A text as a string of a style in an attribute.
+std::string style_string(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') out += '\\';
+    out += c;
+  }
+  return "'" + escape(out) + "'";
+}
+
+/// What stands before each value of a card: --n1 of the first column.
+std::string card_names(const Table& t, const std::vector<ShownColumn>& columns) {
+  std::string out;
+  for (std::size_t k = 0; k < t.columns.size(); ++k) {
+    const std::string unit = printed_unit(columns[k].unit.name);
+    out += "--n" + std::to_string(k + 1) + ':' +
+           style_string(t.columns[k].name + (unit.empty() ? "" : ", " + unit)) + ';';
+  }
+  return out;
+}
+
+/// Takes a text of a column a line of its own in a card?
+bool has_long_text(const Table& t, std::size_t k, const ShownColumn& column,
+                   const FigureNumbers& numbers) {
+  constexpr std::size_t letters_of_a_third = 18;
+  if (column.numeric) return false;
+  return std::any_of(t.rows.begin(), t.rows.end(), [&](const auto& row) {
+    return k < row.size() && letters_of(cell_html(row[k], column, numbers)) > letters_of_a_third;
+  });
 }
 
 /// Of a wide table the columns that say something; those without a number in any row are in the
@@ -187,7 +232,15 @@ std::string table_html(const Table& whole, const FigureNumbers& numbers) {
   std::vector<ShownColumn> columns(t.columns.size());
   for (std::size_t k = 0; k < t.columns.size(); ++k)
     columns[k] = shown_as(t, k);
-  std::string s = "<div class=\"scroll\"><table" + print_size(t, columns) + ">";
+  const double width = least_width(t, columns);
+  const bool cards = needs_cards(width);
+  for (std::size_t k = 0; cards && k < t.columns.size(); ++k)
+    columns[k].is_long = has_long_text(t, k, columns[k], numbers);
+  const std::string style = print_size(width) + (cards ? card_names(t, columns) : "");
+  std::string s = "<div class=\"scroll\"><table";
+  if (cards) s += " class=\"cards\"";
+  if (!style.empty()) s += " style=\"" + style + '"';
+  s += '>';
   if (!t.title.empty()) s += "<caption>" + escape(t.title) + "</caption>";
   s += "<thead><tr>";
   for (std::size_t k = 0; k < t.columns.size(); ++k) {
@@ -401,6 +454,20 @@ std::string section_html(const ReportSection& x, const std::string& id,
   return s + "</section>\n";
 }
 
+/// As many rules as the widest table in cards has columns; the names themselves stand in the table.
+std::string card_css(const Report& r) {
+  std::size_t columns = 0;
+  for (const ReportSection& x : r.sections)
+    for (const Table& t : x.tables)
+      columns = std::max(columns, t.columns.size());
+  std::string s = "@media screen and (max-width: 600px) {\n";
+  for (std::size_t k = 1; k <= columns; ++k) {
+    const std::string n = std::to_string(k);
+    s += ".cards td:nth-child(" + n + ")::before { content: var(--n" + n + "); }\n";
+  }
+  return s + "}\n";
+}
+
 }  // namespace
 
 std::string render_report(const Report& r) {
@@ -409,6 +476,7 @@ std::string render_report(const Report& r) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escape(r.title) + "</title>\n<style>\n";
   s += report_css;
+  s += card_css(r);
   s += "</style>\n</head>\n<body>\n";
   const bool nav = r.sections.size() > 1;
   const FigureIds ids = figure_ids(r);

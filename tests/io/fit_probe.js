@@ -35,6 +35,20 @@ window.addEventListener("load", () => {
       }
     }
   }
+  // no table is moved sideways within its box, and each value of one has the name of its column
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+  for (const table of document.querySelectorAll("table")) {
+    const box = table.parentElement, name = table.caption?.textContent ?? table.textContent.slice(0, 40);
+    check(box.scrollWidth <= box.clientWidth, "table '" + name + "' is " + box.scrollWidth + " px wide in " + box.clientWidth);
+    if (table.tHead && !seen(table.tHead))
+      for (const row of table.tBodies[0].rows)
+        [...row.cells].filter((cell) => seen(cell) && cell.colSpan === 1).forEach((cell) => {
+          const title = table.tHead.rows[0].cells[cell.cellIndex], unit = title.querySelector("small")?.textContent ?? "";
+          const said = getComputedStyle(cell, "::before").content, text = title.firstChild?.nodeType === 3 ? title.firstChild.data : "";
+          const wanted = text + (unit ? ", " + unit : "");
+          check(said === JSON.stringify(wanted) || (!wanted && said === '""'), "'" + cell.textContent + "' of '" + name + "' is called " + said);
+        });
+  }
   const out = document.createElement("pre");
   out.id = "probe";
   out.textContent = wrong.length ? wrong.join("\n") : "ok";

@@ -11,6 +11,31 @@
 namespace whirl::io {
 namespace {
 
+/// Wider than a telephone, with names that a style sheet could trip over.
+Table wide_table() {
+  Table t;
+  t.title = "Compliance";
+  t.columns = {{"check", "-", ""},    {"set's \\ \"name\" & more", "-", ""},
+               {"value", "-", ""},    {"", "-", ""},
+               {"limit", "-", ""},    {"unit", "-", ""},
+               {"result", "-", ""},   {"source", "-", ""},
+               {"amplitude", "m", ""}};
+  Table::Cell failed("failed");
+  failed.mark = Table::Cell::Mark::failed;
+  for (int k = 0; k < 3; ++k)
+    t.add({"separation margin of mode " + std::to_string(k), "largest clearance", 0.1234567,
+           ">=", 12.345e-7, "kg m2", failed, "API 617, 8th edition, 4.8.2.10", 1.2e-5});
+  return t;
+}
+
+/// Does not fit either, and has none.
+Table empty_table() {
+  Table t = wide_table();
+  t.title = "Peaks";
+  t.rows.clear();
+  return t;
+}
+
 Report sample() {
   Report r;
   r.title = "Test <rotor> & more";
@@ -24,6 +49,7 @@ Report sample() {
   t.add({"1st", 12.34567891});
   a.tables.push_back(t);
   ReportSection b{"Step 'two'", "", {}, {}, {}};
+  b.tables = {wide_table(), empty_table()};
   int k = 0;
   for (auto& f : gallery())
     (k++ % 2 ? a : b).figures.push_back(f);
@@ -222,7 +248,7 @@ TEST(Report, LivesInABrowser) {
     EXPECT_EQ(found_in_browser(html, "report_probe.js", width), "ok") << width;
 }
 
-// Nothing has to be moved sideways, page or figure; no letter is too small to be read, and none
+// Nothing has to be moved sideways, page, table or figure; no letter is too small to be read, and none
 // stands outside its figure.
 TEST(Report, FitsTelephoneAndDesk) {
   if (!browser_is_there()) GTEST_SKIP() << "no chromium";
