@@ -146,7 +146,9 @@ void PolarDrawing::draw() {
   for (std::size_t i = 0; i < a_.series.size(); ++i)
     draw_curve(i);
   plot.end();
+  c_.add("<g class=\"radii\">");
   draw_radii();
+  c_.add("</g>\n");
   const Box inside{cx_ - R_ - 30, cy_ - R_, 2 * R_ + 60, 2 * R_};
   for (const auto& n : a_.notes)
     draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken_, seen_);

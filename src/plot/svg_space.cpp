@@ -82,6 +82,14 @@ const char* anchor_of(double outwards_x) {
 }
 
 constexpr double title_row = 15;
+constexpr double fewest_ticks = 3;  ///< of which one may stand where axes meet
+
+/// Room for the labels and the title of the upright axis, px.
+double left_of(const Scale& upright, bool narrow) {
+  constexpr double marks = 34;  // gaps and the letters of the title
+  const double labels = widest_label(linear_ticks(upright.lo, upright.hi, fewest_ticks));
+  return std::max(narrow ? 40.0 : 56.0, marks + labels);
+}
 
 /// A title with a comma takes two lines where it stands below the box.
 std::vector<std::string> lines_of(const std::string& title) {
@@ -134,6 +142,7 @@ class SpaceDrawing {
   const double top_;
   const std::vector<LegendEntry> entries_;
   const Box legend_;
+  const double left_;  ///< margin, px
   const Box box_;
   double unit_ = 1, cx_ = 0, cy_ = 0;  ///< px a unit of the box, and where its middle stands
   std::array<double, 3> back_{};       ///< where the faces behind the data stand
@@ -153,14 +162,15 @@ SpaceDrawing::SpaceDrawing(Canvas& c, const Axes& a, const Box& cell)
       top_(a.title.empty() ? 6 : 26),
       entries_(legend_entries(a, colors_)),
       legend_(legend_size_of(entries_, c.narrow ? narrow_legend_width : 0)),
-      box_{cell.x + (c.narrow ? 40 : 56), cell.y + top_ + 2, cell.w - (c.narrow ? 70 : 112),
+      left_(left_of(scale_[2], c.narrow)),
+      box_{cell.x + left_, cell.y + top_ + 2, cell.w - left_ - (c.narrow ? 30 : 56),
            cell.h - top_ - 48 - (c.narrow ? legend_.h : 0) -
                (a.y.label.find(", ") == std::string::npos ? 0 : title_row)} {
   fit();
   const Vec3 towards(view_.ca * view_.ce, view_.sa * view_.ce, view_.se);
   for (std::size_t d = 0; d < 3; ++d) {
     back_[d] = towards[static_cast<Index>(d)] > 0 ? scale_[d].p0 : scale_[d].p1;
-    const double wanted = std::clamp(unit_ * 2 * scale_[d].p1 / 70, 2.0, 6.0);
+    const double wanted = std::clamp(unit_ * 2 * scale_[d].p1 / 70, fewest_ticks, 6.0);
     ticks_[d] = linear_ticks(scale_[d].lo, scale_[d].hi, wanted);
   }
 }
@@ -298,7 +308,11 @@ void SpaceDrawing::draw_axis(Index d) {
   q[d] = scale_[at(d)].p1;
   segment(p, q, stroke(ink, 0.9));
   if (edge.length < 12) return;  // seen end on
+  c_.add("<g class=\"ts\"");
+  c_.attr("data-px", edge.length);
+  c_.add(">");
   const double widest = draw_ticks(d, edge);
+  c_.add("</g>");
   const double reach = 16 + std::abs(edge.ox) * widest + 12 * std::abs(edge.oy);
   const std::string title = axis_title(*axis_[at(d)], ticks_[at(d)].exponent);
   if (d == 2) {

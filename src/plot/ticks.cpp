@@ -34,12 +34,12 @@ void label(Ticks& t, double step) {
   }
 }
 
-}  // namespace
+/// Two at least: one number does not tell how long an axis is.
+constexpr std::size_t fewest = 2;
 
-Ticks linear_ticks(double lo, double hi, double target) {
+Ticks linear_ticks_about(double lo, double hi, double target) {
   Ticks t;
   const double span = hi - lo;
-  if (!(span > 0) || !std::isfinite(span)) return t;
   const double raw = span / std::max(target, 1.0),
                power = std::pow(10.0, std::floor(std::log10(raw)));
   double step = 10 * power;
@@ -60,6 +60,17 @@ Ticks linear_ticks(double lo, double hi, double target) {
   return t;
 }
 
+}  // namespace
+
+Ticks linear_ticks(double lo, double hi, double target) {
+  const double span = hi - lo;
+  if (!(span > 0) || !std::isfinite(span)) return {};
+  Ticks t = linear_ticks_about(lo, hi, target);
+  for (double more = 1.5; t.major.size() < fewest && more < 8; more *= 1.5)
+    t = linear_ticks_about(lo, hi, more * target);
+  return t;
+}
+
 Ticks log_ticks(double lo, double hi, double target) {
   Ticks t;
   if (!(lo > 0) || !(hi > lo)) return t;
@@ -71,7 +82,15 @@ Ticks log_ticks(double lo, double hi, double target) {
     t = linear_ticks(lo, hi, target);
     return t;
   }
-  const int skip = std::max(1, static_cast<int>(std::ceil(decades / std::max(target, 2.0))));
+  int skip = std::max(1, static_cast<int>(std::ceil(decades / std::max(target, 2.0))));
+  const auto powers = [&] {
+    int n = 0;
+    for (int e = first; e <= last; ++e)
+      n += e % skip == 0 && inside(std::pow(10.0, e)) ? 1 : 0;
+    return n;
+  };
+  while (skip > 1 && powers() < static_cast<int>(fewest))
+    --skip;
   const bool between = decades < 2.2;
   for (int e = first; e <= last; ++e)
     for (int m = 1; m < 10; ++m) {

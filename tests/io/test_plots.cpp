@@ -109,6 +109,16 @@ TEST(Ticks, DecadesAndTheirFractions) {
             (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
 }
 
+// One number alone does not tell how long an axis is.
+TEST(Ticks, AreTwoAtLeast) {
+  for (const double from : {-1.0, -0.95, -0.3, 0.01, 0.4, 1.1, 4.9})
+    for (const double span : {0.7, 1.0, 1.25, 2.1, 4.4, 9.1}) {
+      EXPECT_GE(plot::linear_ticks(from, from + span, 2).major.size(), 2u) << from << ' ' << span;
+      const double low = std::pow(10.0, from), high = std::pow(10.0, from + span);
+      EXPECT_GE(plot::log_ticks(low, high, 2).major.size(), 2u) << from << ' ' << span;
+    }
+}
+
 TEST(Text, EscapesAndRepairs) {
   EXPECT_EQ(escape("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
   EXPECT_EQ(escape("\xff\x01µ\xc3"), "\xEF\xBF\xBD\xEF\xBF\xBDµ\xEF\xBF\xBD");

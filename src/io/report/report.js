@@ -36,7 +36,13 @@
     const labels = major.map((v) => minus((Math.abs(v) < 1e-9 * step ? 0 : v / unit).toFixed(decimals)));
     return { major, minor, labels, exponent };
   }
-  function linearTicks(lo, hi, target, steps = [[1, 5], [2, 4], [2.5, 5], [5, 5]]) {
+  const fewest = 2;   // one number does not tell how long an axis is
+  function linearTicks(lo, hi, target, steps) {
+    let t = linearTicksAbout(lo, hi, target, steps);
+    for (let more = 1.5; t.major.length < fewest && more < 8; more *= 1.5) t = linearTicksAbout(lo, hi, more * target, steps);
+    return t;
+  }
+  function linearTicksAbout(lo, hi, target, steps = [[1, 5], [2, 4], [2.5, 5], [5, 5]]) {
     const span = hi - lo, raw = span / Math.max(target, 1), p = 10 ** Math.floor(Math.log10(raw));
     let step = 10 * p, parts = 5;
     for (const [f, m] of steps) if (f * p >= raw * 0.999) { step = f * p; parts = m; break; }
@@ -49,7 +55,14 @@
     const decades = Math.log10(hi / lo);
     if (decades < 0.8) return linearTicks(lo, hi, target);
     const first = Math.floor(Math.log10(lo) + 1e-9), last = Math.ceil(Math.log10(hi) - 1e-9);
-    const skip = Math.max(1, Math.ceil(decades / Math.max(target, 2))), between = decades < 2.2;
+    const between = decades < 2.2;
+    let skip = Math.max(1, Math.ceil(decades / Math.max(target, 2)));
+    const powers = () => {
+      let n = 0;
+      for (let e = first; e <= last; ++e) if (e % skip === 0 && 10 ** e >= lo * (1 - 1e-9) && 10 ** e <= hi * (1 + 1e-9)) ++n;
+      return n;
+    };
+    while (skip > 1 && powers() < fewest) --skip;
     const t = { major: [], minor: [], labels: [], exponent: 0 };
     for (let e = first; e <= last; ++e)
       for (let m = 1; m < 10; ++m) {
@@ -348,7 +361,7 @@
       const seg = (p, q, c, w) => { const m = P.px(p), n = P.px(q); return `<line x1="${n2(m[0])}" y1="${n2(m[1])}" x2="${n2(n[0])}" y2="${n2(n[1])}" class="${c}" stroke-width="${w}"/>`; };
       const at = (d, v) => (2 * this.axis[d].of(v) - 1) * H[d];
       const back = P.towards.map((t, d) => (t > 0 ? -H[d] : H[d]));
-      const ticks = this.axis.map((a, d) => linearTicks(a.lo, a.hi, Math.max(2, Math.min(6, (P.unit * 2 * H[d]) / 70))));
+      const ticks = this.axis.map((a, d) => linearTicks(a.lo, a.hi, Math.max(3, Math.min(6, (P.unit * 2 * H[d]) / 70))));
       let s = "";
       const taken = [];   // by labels and titles
       for (let d = 0; d < 3; ++d)
