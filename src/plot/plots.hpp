@@ -82,7 +82,7 @@ struct ResponseCurve {
 Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves,
                  Amplitude convention, std::span<const CriticalMark> criticals = {},
                  bool log_amplitude = false);
-/// Speeds are written along the first curve, at the peaks marked among others.
+/// Speeds are written along the curves, at the peaks marked among others.
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
                   Amplitude convention, std::span<const CriticalMark> marks = {});
 

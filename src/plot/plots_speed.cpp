@@ -365,11 +365,12 @@ std::vector<std::size_t> points_at(const std::vector<double>& speeds,
 }
 
 /// Speeds are written where the vector has turned by 40 degrees or more, and at the peaks: those
-/// marked, or the largest value.
+/// marked, or the largest value. curves: how many share the axes.
 void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds,
-                 std::span<const CriticalMark> marks) {
+                 std::span<const CriticalMark> marks, std::size_t curves) {
   if (s.y.empty()) return;
-  constexpr std::size_t most = 12;  // more hide the curve
+  constexpr std::size_t on_all = 12;  // more hide the curves
+  const std::size_t most = a.notes.size() + std::max<std::size_t>(2, on_all / curves);
   const auto peak =
       static_cast<std::size_t>(std::max_element(s.y.begin(), s.y.end()) - s.y.begin());
   std::vector<std::size_t> peaks = points_at(speeds, marks);
@@ -466,7 +467,7 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
       s.y.push_back(std::abs(p.vector) * factor * u.factor);
       speed.values.push_back(p.speed);
     }
-    if (&c == &curves.front()) note_speeds(a, s, speed.values, marks);
+    note_speeds(a, s, speed.values, marks, curves.size());
     s.extra.push_back(std::move(speed));
     a.series.push_back(std::move(s));
   }

@@ -119,6 +119,28 @@ TEST(Ticks, AreTwoAtLeast) {
     }
 }
 
+// The readers of a polar plot of two directions want the speeds of both.
+TEST(Polar, EveryCurveHasItsSpeeds) {
+  plot::ResponseCurve y{"y", {}, {}, {}}, z{"z", {}, {}, {}};
+  for (int k = 0; k <= 40; ++k) {
+    for (plot::ResponseCurve* c : {&y, &z})
+      c->speed.push_back(10.0 * k);
+    y.amplitude.push_back(1e-5 / (1 + 0.01 * (k - 20) * (k - 20)));
+    z.amplitude.push_back(0.5e-5 / (1 + 0.01 * (k - 25) * (k - 25)));
+    y.phase_lag.push_back(pi * k / 40);
+    z.phase_lag.push_back(pi + pi * k / 40);
+  }
+  const std::vector<plot::ResponseCurve> both{y, z};
+  const plot::Figure f = plot::plot_polar("p", "p", both, plot::Amplitude::zero_to_peak);
+  const auto& notes = f.axes.front().notes;
+  EXPECT_LE(notes.size(), 12u);
+  for (const auto& [from, to] : {std::pair{0.0, 180.0}, {180.0, 360.0}})
+    EXPECT_GE(std::count_if(notes.begin(), notes.end(),
+                            [&](const plot::Note& n) { return n.x >= from && n.x <= to; }),
+              2)
+        << from;
+}
+
 TEST(Text, EscapesAndRepairs) {
   EXPECT_EQ(escape("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
   EXPECT_EQ(escape("\xff\x01µ\xc3"), "\xEF\xBF\xBD\xEF\xBF\xBDµ\xEF\xBF\xBD");
