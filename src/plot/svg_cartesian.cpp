@@ -457,8 +457,10 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   for (const auto& job : pins)
     draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series),
               a.series[job.series].right_axis, job.attributes);
+  std::vector<Point> lines;
+  look_over(a, p, lines);
+  draw_notes(c, a, p, b, f.notes, lines, taken);
   add_bodies(a, p, seen);
-  draw_notes(c, a, p, b, f.notes, taken);
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});

@@ -191,9 +191,10 @@ NotePlan place_notes(const Axes& a, const Prepared& p, const Box& frame,
                      const std::vector<Point>& seen);
 /// Height of the key, px; 0 without one.
 double key_height(const NotePlan& plan, double width);
-/// Names of rules, and the notes where the plan has them.
+/// Names of rules, and the notes where the plan has them. seen: points of the curves, which are
+/// dimmed behind a text.
 void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const NotePlan& plan,
-                std::vector<Box>& taken);
+                const std::vector<Point>& seen, std::vector<Box>& taken);
 void draw_key(Canvas& c, const NotePlan& plan, const Point& corner, double width);
 
 struct Margins {

@@ -287,7 +287,8 @@ bool is_free(const Box& t, const std::vector<Box>& taken) {
 }
 
 bool inside(const Box& t, const Box& frame) {
-  return t.x >= frame.x + 2 && t.right() <= frame.right() - 2 && t.y >= frame.y + 2 &&
+  constexpr double apart = 4;  // px, from the upright edges, which look like letters
+  return t.x >= frame.x + apart && t.right() <= frame.right() - apart && t.y >= frame.y + 2 &&
          t.bottom() <= frame.bottom() - 2;
 }
 
@@ -335,9 +336,9 @@ Box place_beside(const Point& p, double w, const Box& frame, const std::vector<B
 }
 
 /// At a place, or as near to it as there is room, no further away than told: in rows of the text,
-/// half its width aside counting as one.
+/// half its width aside counting as one. weight: of what it hides of bodies and curves.
 Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& taken,
-               const std::vector<Point>& seen, double furthest) {
+               const std::vector<Point>& seen, double furthest, double weight) {
   if (hidden_by(wanted, frame, taken, seen) == 0.0) return wanted;
   Box at = wanted;
   double best = infinity;
@@ -347,8 +348,9 @@ Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& take
       if (std::abs(rows) + 2 * std::abs(column) > furthest) continue;
       const Box t{wanted.x + column * wanted.w, wanted.y + 15.0 * rows, wanted.w, wanted.h};
       // a name beside what it names looks like its neighbour's
-      const double cost = std::abs(rows) + 3.5 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
-                          10 * hidden_by(t, frame, taken, seen);
+      const double cost =
+          std::abs(rows) + 3.5 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
+          10 * (hidden_by(t, frame, taken, {}) + weight * hidden_by(t, frame, {}, seen));
       if (cost >= best) continue;
       best = cost;
       at = t;
@@ -364,6 +366,7 @@ class NotePlacer {
 
  private:
   Box place_text(const PlacedNote& note, const std::string& text, bool is_number) const;
+  void take(const Box& text);
   bool has_room(const PlacedNote& note) const;
   void number_the_rest(std::vector<PlacedNote> rest);
 
@@ -409,8 +412,14 @@ Box NotePlacer::place_text(const PlacedNote& note, const std::string& text, bool
       note.point.x + n.dx + (is_number ? (note_width(n.text) / wide_fonts - w) / 2 : 0);
   const Box wanted{x, note.point.y + n.dy - 11, w, 14};
   // a number may stand on a body, a name must not
-  return is_number ? place_near(wanted, frame_, taken_, {}, 6.0)
-                   : place_near(wanted, frame_, taken_, seen_, 2.5);
+  return is_number ? place_near(wanted, frame_, taken_, seen_, 6.0, 0.15)
+                   : place_near(wanted, frame_, taken_, seen_, 2.5, 1.0);
+}
+
+/// What stands beside a text keeps its distance, or two read as one.
+void NotePlacer::take(const Box& text) {
+  constexpr double apart = 4;  // px
+  taken_.push_back({text.x - apart, text.y, text.w + 2 * apart, text.h});
 }
 
 /// Names of a drawing stand on no body.
@@ -430,7 +439,7 @@ void NotePlacer::number_the_rest(std::vector<PlacedNote> rest) {
     note.number = static_cast<int>(plan_.key.size()) + 1;
     const std::string number = std::to_string(note.number);
     note.at = place_text(note, number, true);
-    taken_.push_back(note.at);
+    take(note.at);
     plan_.key.push_back(number + ": " + a_.notes[note.note].text);
     plan_.notes.push_back(note);
   }
@@ -446,7 +455,7 @@ NotePlan NotePlacer::place() {
       rest.push_back(note);
       continue;
     }
-    taken_.push_back(note.at);
+    take(note.at);
     plan_.notes.push_back(note);
   }
   number_the_rest(std::move(rest));
@@ -528,12 +537,26 @@ namespace {
 
 constexpr int name_rows = 4;
 
-/// Beside a rule at v px, in the first row that is free; the last one otherwise.
-Box beside_rule(const Rule& r, double v, double w, const Box& b, double most,
-                const std::vector<Box>& taken) {
-  Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
-  if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
-  for (int k = 0; k < most && !is_free(at, taken); ++k) {
+/// Has an upright rule at v px others at its right, where its name would stand, but none at its left?
+bool is_left_free(const std::vector<Rule>& rules, const Scale& x, const Box& b, double v,
+                  double w) {
+  const auto crossed = [&](double from, double to) {
+    return std::any_of(rules.begin(), rules.end(), [&](const Rule& r) {
+      return r.vertical && x(r.value) > from && x(r.value) < to;
+    });
+  };
+  constexpr double apart = 4;
+  return v - w - apart > b.x && crossed(v + 0.5, v + w) && !crossed(v - w - apart, v - 0.5);
+}
+
+/// Beside a rule at v px, in the first row that is free, from the one told on; the last one
+/// otherwise.
+Box beside_rule(const Rule& r, double v, double w, const Box& b, int first, double most,
+                const std::vector<Box>& taken, bool left) {
+  Box at = r.vertical ? Box{v + 3, b.y + 3 + 14.0 * first, w, 14}
+                      : Box{b.right() - w - 4, v - 15, w, 14};
+  if (r.vertical && (at.right() > b.right() || left)) at.x = v - w - 3;
+  for (int k = first; k < most && !is_free(at, taken); ++k) {
     if (r.vertical)
       at.y += 14;
     else
@@ -558,7 +581,8 @@ std::vector<RuleName> places_of_names(const Axes& a, const Scale& x, const Scale
       continue;
     const double most =
         r.vertical ? std::min<double>(name_rows - 1, b.h / 14 - 1) : b.w / (w + 10) - 1;
-    const Box at = beside_rule(r, v, w, b, most, taken);
+    const bool left = r.vertical && is_left_free(a.rules, x, b, v, w);
+    const Box at = beside_rule(r, v, w, b, 0, most, taken, left);
     if (r.vertical && !is_free(at, taken)) {
       rest.push_back(i);
       continue;
@@ -573,7 +597,10 @@ std::vector<RuleName> places_of_names(const Axes& a, const Scale& x, const Scale
     RuleName& name = names[rest[k]];
     name.number = static_cast<int>(k) + 1;
     const double w = note_width(std::to_string(name.number)) + apart;
-    name.at = beside_rule(r, px(r), w, b, b.h / 14 - 1, taken);
+    const bool left = is_left_free(a.rules, x, b, px(r), w);
+    const double most = b.h / 14 - 1;
+    const int first = most > name_rows ? name_rows : 0;  // beside a name it would be part of it
+    name.at = beside_rule(r, px(r), w, b, first, most, taken, left);
     taken.push_back(name.at);
   }
   return names;
@@ -587,8 +614,35 @@ double names_height(const Axes& a, const Scale& x, const Box& b) {
   return lowest - b.y;
 }
 
+namespace {
+
+/// Do curves or rules run through a text? Bodies are pale enough to be read on.
+bool is_crossed(const Axes& a, const Prepared& p, const Box& text, const std::vector<Point>& seen) {
+  const auto on = [&text](double x, double y) {
+    return x > text.x && x < text.right() && y > text.y && y < text.bottom();
+  };
+  for (const Rule& r : a.rules)
+    if (r.vertical ? on(p.x(r.value), text.y + 1) : on(text.x + 1, p.y(r.value))) return true;
+  return std::any_of(seen.begin(), seen.end(), [&](const Point& q) { return on(q.x, q.y); });
+}
+
+/// A text beside its point; what crosses it is dimmed.
+void draw_name(Canvas& c, const Box& at, const std::string& text, bool crossed) {
+  if (crossed) {
+    c.add("<rect");
+    c.attr("x", at.x - 1);
+    c.attr("y", at.y + 1);
+    c.attr("width", note_width(text) + 2);
+    c.attr("height", 12);
+    c.add(" " + paper_fill() + " fill-opacity=\"0.8\"/>");
+  }
+  c.text(at.x, at.y + 11, text, note_size);
+}
+
+}  // namespace
+
 void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const NotePlan& plan,
-                std::vector<Box>& taken) {
+                const std::vector<Point>& seen, std::vector<Box>& taken) {
   const std::vector<RuleName> names = places_of_names(a, p.x, p.y, b);
   for (std::size_t i = 0; i < a.rules.size(); ++i) {
     const Rule& r = a.rules[i];
@@ -598,8 +652,8 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
     taken.push_back(at);
     c.add("<g class=\"pin\" data-p=\"" + number_text(r.vertical ? v : b.right()) + " " +
           number_text(r.vertical ? b.y : v) + "\" data-lock=\"" + (r.vertical ? "y" : "x") + "\">");
-    c.text(at.x, at.y + 11, names[i].number > 0 ? std::to_string(names[i].number) : r.label,
-           note_size);
+    const std::string name = names[i].number > 0 ? std::to_string(names[i].number) : r.label;
+    draw_name(c, at, name, is_crossed(a, p, at, seen));
     c.add("</g>\n");
   }
   const double dx = b.x - plan.frame.x, dy = b.y - plan.frame.y;
@@ -614,7 +668,8 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
       continue;
     }
     c.add("<g class=\"pin\" data-p=\"" + number_text(point.x) + " " + number_text(point.y) + "\">");
-    c.text(at.x, at.y + 11, text, note_size);
+    const bool on_body = placed.number > 0 && !a.patches.empty();
+    draw_name(c, at, text, on_body || is_crossed(a, p, at, seen));
     c.add("</g>\n");
   }
 }

@@ -121,7 +121,7 @@ TEST(Drawing, LegendsLieOnNoCurve) {
 TEST(Drawing, NamesStandAboveTheData) {
   plot::Axes a = axes({0, 0.5, 1}, {0, 10, 0});
   const Drawn bare(a);
-  for (const double x : {0.45, 0.46, 0.47, 0.48})
+  for (const double x : {0.45, 0.46, 0.47, 0.48, 0.49})  // the first stands at the left of its rule
     a.rules.push_back({true, x, "a long name"});
   const Drawn named(a);
   double lowest = 0;
