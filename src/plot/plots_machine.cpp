@@ -4,6 +4,7 @@
 #include <core/text.hpp>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace whirl::plot {
 
@@ -104,6 +105,9 @@ void MachineElevation::add_line(const MachineLine& l, int color) {
   for (const DrawnJoint& j : d.joints) {
     Series joint;
     joint.label = j.kind + " ‘" + j.name + "’";
+    const bool listed = std::any_of(axes_.series.begin(), axes_.series.end(),
+                                    [&](const Series& s) { return s.label == joint.label; });
+    if (listed) joint.trace_label = std::exchange(joint.label, {});  // on the other line of it
     joint.x = {mm * (l.x + j.s)};
     joint.y = {mm * l.height};
     joint.style = {4, Dash::solid, 0, j.marker, 11};

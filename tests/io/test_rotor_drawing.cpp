@@ -256,6 +256,27 @@ TEST(RotorDrawing, MachineHasItsLinesWhereTheyStand) {
   }
 }
 
+// A hinge between two lines is drawn on both and listed once.
+TEST(RotorDrawing, AJointOfTwoLinesIsListedOnce) {
+  plot::MachineDrawing machine;
+  for (const double x : {0.0, 0.5}) {
+    plot::MachineLine line;
+    line.x = x;
+    line.drawing.sections.push_back({0, 0.5, 0.01, 0.01, 0, 0, "bar"});
+    line.drawing.joints.push_back({x > 0 ? 0 : 0.5, 0.01, "elbow", "hinge", plot::Marker::circle});
+    machine.lines.push_back(std::move(line));
+  }
+  const plot::Figure f = plot::plot_machine("machine", machine);
+  int drawn = 0, listed = 0;
+  for (const plot::Series& s : f.axes.front().series) {
+    if (s.style.marker != plot::Marker::circle) continue;
+    ++drawn;
+    listed += s.label.empty() ? 0 : 1;
+  }
+  EXPECT_EQ(drawn, 2);
+  EXPECT_EQ(listed, 1);
+}
+
 // One within the other: a support reaches from the rotor to the bore.
 TEST(RotorDrawing, SupportsWithinACasingReachToItsBore) {
   model::Model m = machine_of_two();
