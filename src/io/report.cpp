@@ -202,7 +202,7 @@ std::string card_names(const Table& t, const std::vector<ShownColumn>& columns) 
 /// Takes a text of a column a line of its own in a card?
 bool has_long_text(const Table& t, std::size_t k, const ShownColumn& column,
                    const FigureNumbers& numbers) {
-  constexpr std::size_t letters_of_a_third = 18;
+  constexpr std::size_t letters_of_a_third = 14;
   if (column.numeric) return false;
   return std::any_of(t.rows.begin(), t.rows.end(), [&](const auto& row) {
     return k < row.size() && letters_of(cell_html(row[k], column, numbers)) > letters_of_a_third;
@@ -432,12 +432,28 @@ std::string title_block_html(const Report& r) {
   return s + "</table>\n";
 }
 
+/// Tables of earlier sections, as they are written, and links to these.
+using PrintedTables = std::map<std::string, std::string>;
+
+/// A table, or a link to the same one of an earlier section.
+std::string table_once_html(const Table& t, const FigureNumbers& numbers,
+                            const PrintedTables& printed) {
+  std::string html = table_html(t, numbers);
+  const auto same = printed.find(html);
+  if (t.rows.empty() || t.title.empty() || same == printed.end()) return html;
+  return "<p class=\"same\">" + escape(t.title) + ": as in " + same->second + "</p>\n";
+}
+
 std::string section_html(const ReportSection& x, const std::string& id,
-                         const std::vector<std::string>& figure_ids, const FigureNumbers& numbers) {
+                         const std::vector<std::string>& figure_ids, const FigureNumbers& numbers,
+                         PrintedTables& printed) {
   std::string s =
       "<section id=\"" + id + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
   for (const auto& t : x.tables)
-    s += table_html(t, numbers);
+    s += table_once_html(t, numbers, printed);
+  for (const auto& t : x.tables)
+    printed.try_emplace(table_html(t, numbers),
+                        "<a href=\"#" + id + "\">" + escape(x.title) + "</a>");
   if (!x.figures.empty()) {
     s += "<div class=\"figures\">";
     for (std::size_t i = 0; i < x.figures.size(); ++i)
@@ -487,8 +503,9 @@ std::string render_report(const Report& r) {
   s += title_block_html(r) + "</header>\n";
   if (nav) s += contents_html(r, ids);
   s += "<main>\n" + facts_html(r) + warnings_html(r);
+  PrintedTables printed;
   for (std::size_t k = 0; k < r.sections.size(); ++k)
-    s += section_html(r.sections[k], anchor(k), ids[k], numbers);
+    s += section_html(r.sections[k], anchor(k), ids[k], numbers, printed);
   if (!r.summary.is_null())
     s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
   if (!r.deck.empty())

@@ -119,13 +119,15 @@ io::Table station_table(const run::Job& job) {
   io::Table t;
   t.title = "Stations";
   t.columns = {{"shaft", "-", ""},
-               {"s", "m", "from the left end"},
+               {"s", "m", "from the left end of the shaft"},
                {"outer diameter", "mm", ""},
-               {"station", "-", "what is there"}};
+               {"node", "-", ""},
+               {"station", "-", "sections, and what is attached there"}};
   for (const meshes::Station& s : job.mesh.stations) {
     if (s.labels.empty()) continue;
     const auto line = static_cast<std::size_t>(s.line);
-    t.add({job.mesh.lines[line].name, s.s, 2e3 * job.mesh.radius(job.model, line, s.s), s.label()});
+    t.add({job.mesh.lines[line].name, s.s, 2e3 * job.mesh.radius(job.model, line, s.s),
+           static_cast<int>(s.at.node), s.label()});
   }
   return t;
 }
@@ -133,11 +135,11 @@ io::Table station_table(const run::Job& job) {
 io::Table mass_table(const model::Model& m) {
   io::Table t;
   t.title = "Masses";
-  t.columns = {{"shaft", "-", ""},
+  t.columns = {{"shaft", "-", "with disks and added mass"},
                {"mass", "kg", ""},
-               {"centre", "m", "along x"},
-               {"Ip", "kg m2", "about the axis"},
-               {"Id", "kg m2", "across, about the centre"}};
+               {"centre", "m", "along the machine"},
+               {"Ip", "kg m2", "about the axis through the centre"},
+               {"Id", "kg m2", "transverse, mean"}};
   const auto row = [&](const std::string& name, const meshes::MassProperties& p) {
     t.add({name, p.mass, p.centre().x(), p.Ip(), p.Id()});
   };

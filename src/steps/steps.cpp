@@ -8,9 +8,9 @@
 #include <steps/step_kinds.hpp>
 #include <core/interrupt.hpp>
 #include <io/nonfinite.hpp>
-#include <meshes/mass_properties.hpp>
 #include <plot/rotor_drawing.hpp>
 #include <plot/svg.hpp>
+#include <results/compliance.hpp>
 
 #include <fmt/format.h>
 
@@ -89,49 +89,13 @@ void take_times(run::Job& job, const Stopwatch& watch) {
   run::put_run_time(job.summary, watch.elapsed());
 }
 
-/// The places with a name.
-io::Table station_table(const run::Job& job) {
-  io::Table t;
-  t.title = "Stations";
-  t.columns = {{"shaft", "-", ""},
-               {"s", "m", "from the left end of the shaft"},
-               {"outer diameter", "mm", ""},
-               {"node", "-", ""},
-               {"station", "-", "sections, and what is attached there"}};
-  for (const meshes::Station& s : job.mesh.stations) {
-    if (s.labels.empty()) continue;
-    const auto line = static_cast<std::size_t>(s.line);
-    t.add({job.mesh.lines[line].name, s.s, 2e3 * job.mesh.radius(job.model, line, s.s),
-           static_cast<int>(s.at.node), s.label()});
-  }
-  return t;
-}
-
-/// Shafts with all that turns with them, and all together.
-io::Table mass_table(const run::Job& job) {
-  io::Table t;
-  t.title = "Masses";
-  t.columns = {{"shaft", "-", "with disks and added mass"},
-               {"mass", "kg", ""},
-               {"centre", "m", "along the machine"},
-               {"Ip", "kg m2", "about the axis through the centre"},
-               {"Id", "kg m2", "transverse, mean"}};
-  const auto add = [&t](const std::string& name, const meshes::MassProperties& p) {
-    t.add({name, p.mass, p.centre().x(), p.Ip(), p.Id()});
-  };
-  for (std::size_t k = 0; k < job.model.shafts.size(); ++k)
-    add(job.model.shafts[k].name, meshes::shaft_mass(job.model, k));
-  if (job.model.shafts.size() > 1) add("total", meshes::total_mass(job.model));
-  return t;
-}
-
 void write_report(run::Job& job, const RunTime& time) {
   job.report.summary = job.summary;
   job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
   job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
   io::ReportSection rotor;
   rotor.title = "Rotor";
-  rotor.tables = {station_table(job), mass_table(job)};
+  rotor.tables = {results::station_table(job), results::mass_table(job.model)};
   rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
   job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
   io::write_report(job.folder.path("report.html"), job.report);

@@ -179,6 +179,29 @@ TEST(Report, WideTablesLeaveEmptyColumnsOut) {
     EXPECT_NE(wide.find(kept), std::string::npos) << kept;
 }
 
+// What an earlier section shows is not printed again: there is a link to it.
+TEST(Report, SameTableIsPrintedOnce) {
+  Table masses;
+  masses.title = "Masses";
+  masses.columns = {{"shaft", "-", ""}, {"mass", "kg", ""}};
+  masses.add({"rotor", 12.5});
+  Table others = masses;
+  others.rows[0][1] = 13.5;
+  Report r;
+  r.sections = {{"Rotor", "", {masses}, {}, {}}, {"lateral", "", {masses, others}, {}, {}}};
+  const std::string html = render_report(r);
+  const auto times = [&html](const std::string& what) {
+    int n = 0;
+    for (std::size_t at = html.find(what); at != std::string::npos; at = html.find(what, at + 1))
+      ++n;
+    return n;
+  };
+  EXPECT_EQ(times("<caption>Masses</caption>"), 2);
+  EXPECT_EQ(times(">12.5</td>"), 1);
+  EXPECT_EQ(times(">13.5</td>"), 1);
+  EXPECT_EQ(times("Masses: as in <a href=\"#s1\">Rotor</a>"), 1);
+}
+
 TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   Report r;
   const plot::Figure f = gallery().front();
