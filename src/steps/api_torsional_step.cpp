@@ -251,6 +251,17 @@ plot::Series line_of(const Excitation& e, double top) {
   return s;
 }
 
+/// Takes lines away that lie above a frequency, rad/s; their names.
+std::string take_above(std::vector<plot::CampbellLine>& lines, double most) {
+  std::string names;
+  std::erase_if(lines, [&](const plot::CampbellLine& l) {
+    if (l.frequency.front() <= most) return false;
+    names += (names.empty() ? "" : ", ") + l.label;
+    return true;
+  });
+  return names;
+}
+
 void TorsionalReport::add_interference() {
   if (modes_.empty()) return;
   const double top = 1.25 * law_.operating[1];
@@ -289,11 +300,14 @@ void TorsionalReport::add_interference() {
   double highest = modes_.front().frequency;
   for (const Excitation& e : excitations_)
     highest = std::max(highest, e.over({0.0, top})[1]);
+  constexpr double room = 1.25;
+  const std::string above = take_above(lines, room * highest);
   plot::Figure f = plot::plot_campbell(s_.file("interference"), "Torsional interference diagram",
                                        lines, orders, marks, highest);
+  if (!above.empty()) f.caption += "Above the axis, and met by no excitation: " + above + ".";
   plot::Axes& a = f.axes.front();
   a.y.min = 0;
-  a.y.max = 1.25 * to_hz(highest);
+  a.y.max = room * to_hz(highest);
   for (const double Omega : law_.operating)
     a.rules.push_back({true,
                        to_rpm(Omega),
