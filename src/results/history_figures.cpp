@@ -2,7 +2,9 @@
 #include <results/history_figures.hpp>
 #include <plot/plots.hpp>
 
+#include <core/text.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,10 +56,21 @@ plot::Figure figure(const model::Step& step, const std::string& name, std::strin
   return f;
 }
 
+/// Diagonal of the box about the nodes, m; 1 where all stand at one place.
+double size_of(const meshes::Mesh& mesh) {
+  Vec3 low = Vec3::Constant(infinity), high = -low;
+  for (const meshes::Node& n : mesh.nodes) {
+    low = low.cwiseMin(n.position);
+    high = high.cwiseMax(n.position);
+  }
+  const double size = (high - low).norm();
+  return size > 0 && std::isfinite(size) ? size : 1.0;
+}
+
 class HistoryFigures {
  public:
   HistoryFigures(const run::Job& job, const model::Step& step, const Channels& channels,
-                 const PlotBuffer& buffer, io::ReportSection& section)
+                 const PlotBuffer& buffer, double unresolved, io::ReportSection& section)
       : job_(job),
         step_(step),
         all_(channels.all),
@@ -65,7 +78,12 @@ class HistoryFigures {
         buffer_(buffer),
         rows_(buffer.kept_rows()),
         convention_(plot::amplitude(job.model.output.peak_to_peak)),
-        section_(section) {}
+        unresolved_(unresolved),
+        size_(size_of(job.mesh)),
+        section_(section) {
+    for (std::size_t i = 0; i < all_.size(); ++i)
+      if (is_load(all_[i].name)) largest_load_ = std::max(largest_load_, load_of(i));
+  }
   void add_speed();
   void add_displacement(const model::Probe& probe);
   void add_path(const model::Probe& probe);
@@ -74,6 +92,7 @@ class HistoryFigures {
   void add_forces();
   void add_torques_against_angle();
   void add_energies();
+  void say_what_is_not_drawn();
 
  private:
   /// Of the kept rows about the middle of their orbit: neither sag nor drift is a vibration.
@@ -90,6 +109,9 @@ class HistoryFigures {
   PlotBuffer::Points column(std::size_t channel, std::size_t component = 0,
                             double scale = 1.0) const;
   double largest_of(std::size_t channel, std::size_t components) const;
+  static bool is_load(const std::string& name);
+  double load_of(std::size_t channel) const;
+  bool is_drawn(const std::string& name, double value, const plot::DisplayUnit& unit, double least);
   /// Place of a channel's first component in a kept row.
   std::size_t place(std::size_t channel) const { return 1 + start_[channel]; }
   /// How a shaft turns, at the kept rows; empty where the speeds are not recorded.
@@ -125,6 +147,9 @@ class HistoryFigures {
   const PlotBuffer& buffer_;
   const std::vector<std::vector<double>>& rows_;
   const plot::Amplitude convention_;
+  const double unresolved_, size_;     ///< size_: of the machine, m
+  double largest_load_ = 0;            ///< N; moments as forces at the machine's size
+  std::vector<std::string> left_out_;  ///< "joint elbow moment (up to 0.2 mN.m)"
   io::ReportSection& section_;
   std::map<std::string, Turning> turnings_;  ///< by shaft
 };
@@ -148,6 +173,26 @@ double HistoryFigures::largest_of(std::size_t channel, std::size_t components) c
   for (std::size_t c = 0; c < components; ++c)
     size = std::max(size, largest(column(channel, c).y));
   return size;
+}
+
+bool HistoryFigures::is_load(const std::string& name) {
+  return name.ends_with(" force") || name.ends_with(" moment") || name.ends_with(" torque");
+}
+
+/// Largest of a load, N: that of a moment as a pair of forces as far apart as the machine is long.
+double HistoryFigures::load_of(std::size_t channel) const {
+  const double largest = largest_of(channel, all_[channel].width());
+  return all_[channel].name.ends_with(" force") ? largest : largest / size_;
+}
+
+/// What is below the least is noted instead.
+bool HistoryFigures::is_drawn(const std::string& name, double value, const plot::DisplayUnit& unit,
+                              double least) {
+  if (value > least) return true;
+  if (value > 0)
+    left_out_.push_back(
+        fmt::format("{} (up to {} {})", name, readable(unit.factor * value, 2), unit.name));
+  return false;
 }
 
 const HistoryFigures::Turning& HistoryFigures::turning_of(const model::Probe& probe) {
@@ -206,6 +251,9 @@ void HistoryFigures::add_displacement(const model::Probe& probe) {
   if (m.width() != 2) return;
   const Turning& turning = turning_of(probe);
   const Radii radii = radii_of(*channel, turning);
+  const double radius = radii.size[radii.largest];
+  if (!is_drawn("motion of " + probe.name, radius, plot::length_unit(radius), unresolved_ * size))
+    return;
   if (turning.speed_varies) add_amplitude(probe.name, radii, turning, unit);
   add_orbit(probe.name, *channel, radii.largest, turning, unit);
 }
@@ -424,6 +472,10 @@ void HistoryFigures::add_force(const Measurement& m, std::size_t channel) {
   if (size == 0.0) return;  // a guide that nothing loads: the CSV says so
   const bool moment = m.name.ends_with(" moment");
   const plot::DisplayUnit unit = plot::unit_for(m.unit, size);
+  const double per_newton = size / load_of(channel);
+  if (!m.name.ends_with(" torque") &&
+      !is_drawn(m.name, size, unit, per_newton * unresolved_ * largest_load_))
+    return;
   plot::Axes a = time_axes(m.name.ends_with(" force")          ? "force on the shaft"
                            : moment                            ? "moment on the shaft (x: torque)"
                            : m.name.ends_with(" shaft torque") ? "torque in the shaft"
@@ -471,6 +523,14 @@ void HistoryFigures::add_torques_against_angle() {
   add("torque_angle", "Recorded torques against the angle of the machine", {std::move(a)});
 }
 
+void HistoryFigures::say_what_is_not_drawn() {
+  if (left_out_.empty()) return;
+  section_.text += fmt::format(
+      "\n\nNot drawn: {}. The step resolves nothing below {} of the largest of its kind (of a "
+      "motion: its displacement; of a moment: the largest force times the size of the machine).",
+      fmt::join(left_out_, ", "), readable(unresolved_, 2));
+}
+
 void HistoryFigures::add_energies() {
   const auto energy = find("energy");
   if (!energy) return;
@@ -495,9 +555,9 @@ void HistoryFigures::add_energies() {
 }  // namespace
 
 void add_history_figures(const run::Job& job, const model::Step& step, const Channels& channels,
-                         const PlotBuffer& buffer, io::ReportSection& section) {
+                         const PlotBuffer& buffer, double unresolved, io::ReportSection& section) {
   if (buffer.rows() < 2) return;
-  HistoryFigures figures(job, step, channels, buffer, section);
+  HistoryFigures figures(job, step, channels, buffer, unresolved, section);
   figures.add_speed();
   for (const model::Probe& probe : job.model.probes) {
     figures.add_displacement(probe);
@@ -508,6 +568,7 @@ void add_history_figures(const run::Job& job, const model::Step& step, const Cha
   figures.add_forces();
   figures.add_torques_against_angle();
   figures.add_energies();
+  figures.say_what_is_not_drawn();
 }
 
 }  // namespace whirl::results

@@ -93,7 +93,7 @@ class HistoryOutput final : public TransientOutput {
 
   void report(TransientEnd& end) override {
     if (!out_.report) return;
-    add_history_figures(job_, step_, channels_, buffer_, end.section);
+    add_history_figures(job_, step_, channels_, buffer_, unresolved_share(end.law), end.section);
     if (out_.csv) end.section.files.emplace_back("time history", step_.name + ".csv");
   }
 

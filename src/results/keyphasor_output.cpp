@@ -11,6 +11,7 @@
 #include <core/text.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -80,6 +81,11 @@ std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
   return top;
 }
 
+std::string length_text(double length) {
+  const plot::DisplayUnit unit = plot::length_unit(length);
+  return readable(unit.factor * length, 2) + " " + unit.name;
+}
+
 bool speed_changes(const std::vector<std::vector<double>>& rows) {
   double low = rows[0][1], high = low;
   for (const auto& r : rows) {
@@ -138,8 +144,16 @@ class KeyphasorOutput final : public TransientOutput {
   std::size_t column(std::size_t probe, std::size_t direction, std::size_t what) const;
   std::vector<io::Channel> channels() const;
   double largest_envelope(std::size_t probe) const;
+  double largest_shown(std::size_t probe) const;
+  double largest_displacement() const;
   void add_synchronous(io::ReportSection& section, std::size_t probe, double size) const;
+  /// Of one probe: the order that is shown, and all frequencies together.
+  struct Responses {
+    std::vector<plot::ResponseCurve> order, envelope;
+  };
+  Responses responses_of(std::size_t probe, double size) const;
   void add_bode(io::ReportSection& section, std::size_t probe, double size) const;
+  void add_envelope(io::ReportSection& section, std::size_t probe, double size) const;
   void add_orders(io::ReportSection& section, std::size_t probe, double size) const;
   std::vector<Vec2> centres(std::size_t probe) const;
   void add_centreline(const TransientEnd& end, std::size_t probe) const;
@@ -147,8 +161,10 @@ class KeyphasorOutput final : public TransientOutput {
   std::string shown_order() const { return fmt::format("{}X", out_.tracking.orders[shown_]); }
   std::string others_than_orders(std::size_t probe) const;
   std::string speed_name() const { return shaft_.empty() ? "speed" : "speed of " + shaft_; }
-  void add_peaks(run::Job& job, io::ReportSection& section) const;
-  void add_orbits(run::Job& job, io::ReportSection& section) const;
+  void add_peaks(run::Job& job, io::ReportSection& section, double unresolved) const;
+  void add_orbits(run::Job& job, io::ReportSection& section, double unresolved) const;
+  void say_unresolved(io::ReportSection& section, const std::vector<std::string>& what,
+                      double unresolved) const;
 
   static constexpr std::size_t most_orbits = 64;
   const model::Output& out_;
@@ -433,18 +449,57 @@ void KeyphasorOutput::report(TransientEnd& end) {
     end.section.text += fmt::format(
         "\n\n{} turns are too few to show amplitude and phase against {}: they stand in {}.",
         rows.size(), speed_name(), file("tracking.csv"));
+  const double unresolved = unresolved_share(end.law) * largest_displacement();
+  std::vector<std::string> left_out;
   for (std::size_t p = 0; p < probes_.size() && !few; ++p) {
-    const double size = largest_envelope(p);
+    const double size = largest_envelope(p), shown = largest_shown(p);
     if (size == 0.0) continue;  // torsion alone: nothing to see here
-    if (speed_changes(rows))
+    if (shown <= unresolved)
+      left_out.push_back(
+          fmt::format("{} of {} (up to {})", shown_order(), probes_[p].name, length_text(shown)));
+    else if (speed_changes(rows))
       add_bode(end.section, p, size);
     else
       add_synchronous(end.section, p, size);
-    add_orders(end.section, p, size);
+    if (size <= unresolved) continue;
+    if (speed_changes(rows)) add_envelope(end.section, p, size);
+    add_orders(end.section, p, std::max(size, 1e3 * unresolved));
     add_centreline(end, p);
   }
-  add_peaks(end.job, end.section);
-  add_orbits(end.job, end.section);
+  say_unresolved(end.section, left_out, unresolved);
+  add_peaks(end.job, end.section, unresolved);
+  add_orbits(end.job, end.section, unresolved);
+}
+
+void KeyphasorOutput::say_unresolved(io::ReportSection& section,
+                                     const std::vector<std::string>& what,
+                                     double unresolved) const {
+  if (what.empty()) return;
+  section.text += fmt::format(
+      "\n\nNot drawn: {}. Below {} the integrator resolves nothing at its tolerance, beside "
+      "displacements of {}; the numbers stand in {}.",
+      fmt::join(what, ", "), length_text(unresolved), length_text(largest_displacement()),
+      file("tracking.csv"));
+}
+
+/// Of the order that Bode plots show.
+double KeyphasorOutput::largest_shown(std::size_t probe) const {
+  double size = 0.0;
+  for (std::size_t d = 0; d < probes_[probe].directions.size(); ++d)
+    for (const auto& r : rows_.kept_rows())
+      size = std::max(size, r[column(probe, d, 2 * shown_)]);
+  return size;
+}
+
+/// From the line at rest, of all probes: what the tolerance of the integrator is relative to.
+double KeyphasorOutput::largest_displacement() const {
+  double size = 0.0;
+  for (std::size_t p = 0; p < probes_.size(); ++p)
+    for (std::size_t d = 0; d < probes_[p].directions.size(); ++d)
+      for (const auto& r : rows_.kept_rows())
+        size = std::max(size, std::abs(r[column(p, d, per_direction_ - 1)]) +
+                                  r[column(p, d, per_direction_ - 2)]);
+  return size;
 }
 
 double KeyphasorOutput::largest_envelope(std::size_t probe) const {
@@ -511,13 +566,12 @@ std::string KeyphasorOutput::others_than_orders(std::size_t p) const {
 }
 
 /// Against speed, rising and falling apart.
-void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double size) const {
+KeyphasorOutput::Responses KeyphasorOutput::responses_of(std::size_t p, double size) const {
   const auto& rows = rows_.kept_rows();
   const Tracked& probe = probes_[p];
-  const std::string id = step_ + "_" + safe_name(probe.name);
   const std::size_t top = turning_row(rows);
   const bool both = top >= 2 && rows.size() - top >= 3;
-  std::vector<plot::ResponseCurve> curves, envelope;
+  Responses out;
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
     for (const bool rising : {true, false}) {
       const std::size_t from = rising ? 0 : top, to = rising ? top + 1 : rows.size();
@@ -536,9 +590,16 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
         c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 2 * shown_ + 1)]
                                                       : nan);
       }
-      curves.push_back(std::move(c));
-      envelope.push_back(std::move(e));
+      out.order.push_back(std::move(c));
+      out.envelope.push_back(std::move(e));
     }
+  return out;
+}
+
+void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double size) const {
+  const Tracked& probe = probes_[p];
+  const std::string id = step_ + "_" + safe_name(probe.name);
+  const std::vector<plot::ResponseCurve> curves = responses_of(p, size).order;
   const std::string order = shown_order();
   plot::Figure bode = plot::plot_bode(
       id + "_bode",
@@ -557,9 +618,13 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(
       id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention_));
-  plot::Figure all =
-      plot::plot_bode(id + "_envelope", probe.name + ": envelope (all frequencies) against speed",
-                      envelope, convention_);
+}
+
+void KeyphasorOutput::add_envelope(io::ReportSection& section, std::size_t p, double size) const {
+  const std::string& probe = probes_[p].name;
+  plot::Figure all = plot::plot_bode(step_ + "_" + safe_name(probe) + "_envelope",
+                                     probe + ": envelope (all frequencies) against speed",
+                                     responses_of(p, size).envelope, convention_);
   all.axes.resize(1);
   all.axes[0].x.label = speed_name();
   all.height = 360;
@@ -706,7 +771,8 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) con
   end.section.figures.push_back(std::move(f));
 }
 
-void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const {
+void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section,
+                                double unresolved) const {
   const auto& rows = rows_.kept_rows();
   if (!speed_changes(rows)) return;
   io::Table t;
@@ -726,6 +792,7 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
         // a fifth of the largest: what is lower is mostly beat, not resonance
         for (const std::size_t k : peaks_of(y, 0.2)) {
           const auto& r = rows[from + k];
+          if (y[k] <= unresolved) continue;
           t.add({probes_[p].name, probes_[p].directions[d].name, rising ? "rising" : "falling",
                  to_rpm(r[1]), y[k], r[column(p, d, 2 * shown_ + 1)] * 180.0 / pi, r[0]});
         }
@@ -736,7 +803,8 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
   section.files.emplace_back("peaks of the response", file("response_peaks.csv"));
 }
 
-void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) const {
+void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section,
+                                 double unresolved) const {
   io::Table t;
   t.columns = {{"probe", "-", ""},
                {"speed", "rpm", ""},
@@ -765,23 +833,22 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     const std::string id = step_ + "_" + safe_name(probes_[p].name);
     const Orbit& o = largest_[p];
-    const bool moves = std::any_of(o.y.begin(), o.y.end(), [](double x) { return x != 0.0; }) ||
-                       std::any_of(o.z.begin(), o.z.end(), [](double x) { return x != 0.0; });
-    if (moves) {
+    if (o.size > unresolved) {
       const plot::Orbit d = drawn(o, fmt::format("{:.0f} rpm", to_rpm(o.speed)));
       plot::Figure f = plot::plot_orbit(
           id + "_orbit", fmt::format("{}: largest orbit, t = {:.4g} s", probes_[p].name, o.t),
           std::span(&d, 1));
       f.caption = "Displacement about its mean; a dot where the keyphasor fires.";
       section.figures.push_back(std::move(f));
-      list(o);
     }
+    list(o);
     std::vector<plot::Orbit> at_speeds;
     for (const Orbit& passing : passed_)
       if (passing.probe == p) {
-        at_speeds.push_back(
-            drawn(passing, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(passing.speed), passing.t)));
         list(passing);
+        if (passing.size > unresolved)
+          at_speeds.push_back(drawn(
+              passing, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(passing.speed), passing.t)));
       }
     if (!at_speeds.empty())
       section.figures.push_back(plot::plot_orbit(

@@ -9,6 +9,7 @@
 #include <run/checkpoint.hpp>
 #include <run/job.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,13 @@ struct TransientEnd {
   io::Value& summary;          ///< of the step
   io::ReportSection& section;  ///< of the step; dropped when the deck wants no report
 };
+
+/// Of the largest motion or load of a transient the share below which its integrator resolves
+/// nothing: a tenth of the error that it aims at; of a fixed step, which aims at none, rounding.
+inline double unresolved_share(const model::TransientStep& law) {
+  constexpr double most = 1e-5, rounding = 1e-9;
+  return law.integrator.dt > 0 ? rounding : std::min(most, 0.1 * law.integrator.tolerance);
+}
 
 class TransientOutput {
  public:

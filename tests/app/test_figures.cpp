@@ -359,3 +359,42 @@ TEST(Figures, TextsOnTextsAreAFault) {
   EXPECT_EQ(test::FigureCheck(with("22")).faults().size(), 1u);
   EXPECT_TRUE(test::FigureCheck(with("40")).faults().empty());
 }
+
+// 52 pm about a sag of 0.1 mm is less than an integration to 1e-4 tells; alone, or integrated to
+// 1e-8, it is a motion.
+TEST(Figures, MotionsThatAreNotResolvedAreNotDrawn) {
+  for (const auto& [gravity, tolerance, drawn] : {std::tuple{"9.81 m/s^2", "1e-4", false},
+                                                  {"9.81 m/s^2", "1e-8", true},
+                                                  {"0 m/s^2", "1e-4", true}}) {
+    std::string deck = lateral_mass(m, gravity, springs) +
+                       driven("3000 rpm", "duration = \"0.3 s\"\nstart = \"unbalance_response\"\n");
+    deck.replace(deck.find("1 kg.mm"), 7, "1e-7 kg.mm");
+    deck.replace(deck.find("1e-8"), 4, tolerance);
+    const DeckRun run(deck);
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const fs::path plots = run.folder / "r" / "plots";
+    const std::string of = std::string(gravity) + ", " + tolerance;
+    EXPECT_EQ(fs::exists(plots / "t_P_synchronous.svg"), drawn) << of;
+    EXPECT_EQ(fs::exists(plots / "t_P_orbit.svg"), drawn) << of;
+    const std::string report = text_of(run.folder / "r" / "report.html");
+    EXPECT_EQ(report.find("Not drawn: 1X of P (up to ") == std::string::npos, drawn) << of;
+    if (drawn) {
+      EXPECT_NEAR(run.csv("t_tracking.csv").last().at("P.y 1X [m]"), 1e-7 * radius_at(100 * pi),
+                  1e-13)
+          << of;
+    }
+  }
+}
+
+// The moment about the axis of a hinge is what rounding leaves of forces of 100 N.
+TEST(Figures, LoadsThatAreNotResolvedAreNotDrawn) {
+  std::string deck = text_of(fs::path(WHIRL_SOURCE) / "examples/33_double_pendulum/deck.toml");
+  deck.replace(deck.find("duration = \"2 s\""), 16, "duration = \"0.4 s\"");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const fs::path plots = run.folder / "r" / "plots";
+  EXPECT_TRUE(fs::exists(plots / "fall_joint_elbow_force.svg"));
+  EXPECT_FALSE(fs::exists(plots / "fall_joint_elbow_moment.svg"));
+  const std::string report = text_of(run.folder / "r" / "report.html");
+  EXPECT_NE(report.find("joint elbow moment (up to "), std::string::npos);
+}
