@@ -360,6 +360,50 @@ TEST(Figures, TextsOnTextsAreAFault) {
   EXPECT_TRUE(test::FigureCheck(with("40")).faults().empty());
 }
 
+namespace {
+
+/// Plane axes 100 px wide at 10, 10, with what is told in them.
+std::string axes_with(const std::string& pins, const std::string& ticks) {
+  return "<svg class=\"figure\" viewBox=\"0 0 200 200\"><g class=\"axes\" data-kind=\"xy\" "
+         "data-box=\"10 10 100 100\" data-x=\"0 1 0\" data-y=\"0 1 0\"><g class=\"pins\">" +
+         pins + "</g><g class=\"tx\">" + ticks + "</g></g></svg>";
+}
+
+std::string text_at(const char* x, const char* y, const char* text) {
+  return std::string("<text x=\"") + x + "\" y=\"" + y + "\" font-size=\"10\">" + text + "</text>";
+}
+
+const std::string two_ticks = text_at("10", "130", "0") + text_at("90", "130", "1");
+
+}  // namespace
+
+TEST(Figures, WhatIsCutOrRunsTogetherIsAFault) {
+  const auto faults = [](const std::string& svg) { return test::FigureCheck(svg).faults(); };
+  EXPECT_TRUE(
+      faults(axes_with(text_at("50", "50", "2") + text_at("70", "50", "3"), two_ticks)).empty());
+  const auto together =
+      faults(axes_with(text_at("50", "50", "2") + text_at("57", "50", "3"), two_ticks));
+  ASSERT_EQ(together.size(), 1u);
+  EXPECT_EQ(together[0], "'2' and '3' run together");
+  const auto cut = faults(axes_with(text_at("5", "50", "-2X"), two_ticks));
+  ASSERT_EQ(cut.size(), 1u);
+  EXPECT_EQ(cut[0], "the frame cuts '-2X'");
+  const auto outside = faults(axes_with(text_at("195", "190", "speed"), two_ticks));
+  EXPECT_EQ(outside.size(), 2u);  // by the frame too
+  EXPECT_EQ(faults(axes_with("", text_at("10", "130", "0"))).size(), 1u);
+}
+
+TEST(Figures, ALegendOnABodyIsAFault) {
+  const auto with = [](const char* y) {
+    return std::string("<svg><path d=\"M10 ") + y + "L40 " + y +
+           " 40 30 10 30Z\"/><g class=\"legend\"><rect x=\"5\" y=\"50\" width=\"60\" "
+           "height=\"20\"/>" +
+           text_at("10", "62", "shaft") + "</g></svg>";
+  };
+  EXPECT_TRUE(test::FigureCheck(with("40")).faults().empty());
+  EXPECT_EQ(test::FigureCheck(with("60")).faults().size(), 1u);
+}
+
 // 52 pm about a sag of 0.1 mm is less than an integration to 1e-4 tells; alone, or integrated to
 // 1e-8, it is a motion.
 TEST(Figures, MotionsThatAreNotResolvedAreNotDrawn) {
