@@ -202,7 +202,7 @@ std::string card_names(const Table& t, const std::vector<ShownColumn>& columns) 
 /// Takes a text of a column a line of its own in a card?
 bool has_long_text(const Table& t, std::size_t k, const ShownColumn& column,
                    const FigureNumbers& numbers) {
-  constexpr std::size_t letters_of_a_third = 14;
+  constexpr std::size_t letters_of_a_third = 15;
   if (column.numeric) return false;
   return std::any_of(t.rows.begin(), t.rows.end(), [&](const auto& row) {
     return k < row.size() && letters_of(cell_html(row[k], column, numbers)) > letters_of_a_third;

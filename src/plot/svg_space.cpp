@@ -193,10 +193,11 @@ void SpaceDrawing::fit() {
 void SpaceDrawing::begin() {
   c_.add("<g class=\"axes\" data-kind=\"space\" data-box=\"" + number_text(box_.x) + " " +
          number_text(box_.y) + " " + number_text(box_.w) + " " + number_text(box_.h) +
-         "\" data-cell=\"" + number_text(cell_.x) + " " + number_text(cell_.right()) +
-         "\" data-view=\"" + number_text(a_.view[0]) + " " + number_text(a_.view[1]) +
-         "\" data-half=\"" + number_text(scale_[0].p1, 4) + " " + number_text(scale_[1].p1, 4) +
-         " " + number_text(scale_[2].p1, 4) + '"');
+         "\" data-cell=\"" + number_text(cell_.x) + " " + number_text(cell_.right()) + " " +
+         number_text(cell_.y) + " " + number_text(cell_.bottom()) + "\" data-view=\"" +
+         number_text(a_.view[0]) + " " + number_text(a_.view[1]) + "\" data-half=\"" +
+         number_text(scale_[0].p1, 4) + " " + number_text(scale_[1].p1, 4) + " " +
+         number_text(scale_[2].p1, 4) + '"');
   axis_attributes(c_, "x", a_.x, scale_[0]);
   axis_attributes(c_, "y", a_.y, scale_[1]);
   axis_attributes(c_, "z", a_.z, scale_[2]);

@@ -188,7 +188,7 @@ def faults_of_legends(root):
 
 
 def faults_of_space(axes):
-    left, right = (float(v) for v in axes.get("data-cell").split())
+    left, right = (float(v) for v in axes.get("data-cell").split()[:2])
     for path in axes.iter("path"):
         if path.get("data-xyz") is not None:
             beyond = max((max(left - x, x - right) for x, _ in points_of(path)), default=0)

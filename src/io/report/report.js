@@ -403,9 +403,10 @@
           widest = Math.max(widest, 6.4 * ticks[d].labels[k].length);
         });
         const reach = 16 + Math.abs(ox) * widest + 12 * Math.abs(oy), name = esc(title(this.axis[d].label, this.axis[d].unit, ticks[d].exponent));
-        const [x, y] = [mid[0] + reach * ox, mid[1] + reach * oy + 6], [left, right] = this.cell;
-        if (d === 2) {
-          s += `<text x="${n2(x - 6)}" y="${n2(mid[1])}" font-size="12.5" text-anchor="middle" class="fi" transform="rotate(-90 ${n2(x - 6)} ${n2(mid[1])})">${name}</text>`;
+        const [x, y] = [mid[0] + reach * ox, mid[1] + reach * oy + 6], [left, right, top, bottom] = this.cell;
+        if (d === 2) {   // what does not fit between the ends of the cell is set smaller
+          const room = 2 * Math.min(mid[1] - top, bottom - mid[1]), size = 12.5 * Math.max(0.5, Math.min(1, room / (7.2 * name.length)));
+          s += `<text x="${n2(x - 6)}" y="${n2(mid[1])}" font-size="${n2(size)}" text-anchor="middle" class="fi" transform="rotate(-90 ${n2(x - 6)} ${n2(mid[1])})">${name}</text>`;
           continue;
         }
         // two lines where there is a comma, below the labels that are there
