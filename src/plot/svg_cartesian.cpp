@@ -273,9 +273,12 @@ void add_bodies(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
       y0 = std::min(y0, y);
       y1 = std::max(y1, y);
     }
-    for (double x = x0; x <= x1; x += apart)
-      for (double y = y0; y <= y1; y += apart)
-        seen.push_back({x, y});
+    if (!(x0 <= x1) || !(y0 <= y1)) continue;
+    const int nx = 1 + static_cast<int>((x1 - x0) / apart),
+              ny = 1 + static_cast<int>((y1 - y0) / apart);
+    for (int i = 0; i <= nx; ++i)
+      for (int j = 0; j <= ny; ++j)
+        seen.push_back({std::lerp(x0, x1, 1.0 * i / nx), std::lerp(y0, y1, 1.0 * j / ny)});
   }
 }
 

@@ -2,8 +2,8 @@
 """Looks at figures as a reader would: no curve leaves its axes, no axis dwarfs its data, every axis has
 two numbers, no text stands on another, on a frame, under a legend or outside the drawing.
 
-    check_figures.py FOLDER      every *.svg in it, and in the report beside it the drawings for
-                                 telephones; a line for each fault, exit code 1 with any
+    check_figures.py FOLDER      every *.svg in it, and the drawings of the report beside it; a line
+                                 for each fault, exit code 1 with any
 """
 import pathlib
 import re
@@ -227,8 +227,7 @@ def faults_of(root, plots, alone):
             yield from faults_of_pins(axes)
             yield from faults_of_rules(axes, plots)
         yield from faults_of_ticks(axes)
-    if alone:
-        yield from faults_of_legends(root)
+    yield from faults_of_legends(root)
     yield from faults_of_texts(root)
 
 
@@ -237,11 +236,11 @@ def drawing_in(file):
 
 
 def drawings_of_page(file):
-    """Those for telephones, and the curves that they repeat, by their names."""
+    """Those for desks and for telephones, and the curves that these repeat, by their names."""
     drawings = [ET.fromstring(text) for text in
                 re.findall(r'<svg class="figure.*?</svg>', file.read_text(encoding="utf-8"), re.DOTALL)]
     plots = {g.get("id"): g for root in drawings for g in groups_of(root, "plot") if g.get("id")}
-    return [root for root in drawings if root.get("class") == "figure narrow"], plots
+    return drawings, plots
 
 
 def faults_in(folder):
@@ -251,8 +250,8 @@ def faults_in(folder):
     report = folder.parent / "report.html"
     if not report.exists():
         return
-    narrow, plots = drawings_of_page(report)
-    for root in narrow:
+    drawings, plots = drawings_of_page(report)
+    for root in drawings:
         for fault in faults_of(root, plots, False):
             yield f"{root.get('id')}: {fault}"
 

@@ -1,7 +1,7 @@
 // Looks at a figure as a reader would: no curve leaves its axes, no axis dwarfs its data or is without
 // two numbers, no number is none, no text stands on another, on a frame or outside the drawing. At
-// the files, and at the drawings for telephones in the report. check_figures.py looks so at the
-// figures of the examples.
+// the files, and at the drawings of the report. check_figures.py looks so at the figures of the
+// examples.
 #pragma once
 #include <core/text.hpp>
 #include <algorithm>
@@ -333,9 +333,9 @@ class FigureCheck {
   std::vector<std::string> faults_;
 };
 
-/// The drawings for telephones in a report.
-inline std::vector<std::string> narrow_drawings(const std::string& report) {
-  constexpr std::string_view begin = "<svg class=\"figure narrow\"", end = "</svg>";
+/// The drawings in a report, for desks and for telephones.
+inline std::vector<std::string> drawings_in(const std::string& report) {
+  constexpr std::string_view begin = "<svg class=\"figure ", end = "</svg>";
   std::vector<std::string> out;
   for (std::size_t at = report.find(begin); at != std::string::npos;
        at = report.find(begin, at + 1))
@@ -361,7 +361,7 @@ inline std::vector<std::string> figure_faults(const std::filesystem::path& folde
     if (file.path().extension() == ".svg")
       look(file.path().filename().string(), text_of(file.path()));
   const std::string report = text_of(folder.parent_path() / "report.html");
-  for (const std::string& svg : narrow_drawings(report)) {
+  for (const std::string& svg : drawings_in(report)) {
     const std::size_t id = svg.find("id=\"") + 4;
     look(svg.substr(id, svg.find('"', id) - id), svg);
   }
