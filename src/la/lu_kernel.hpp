@@ -79,6 +79,13 @@ struct Matrix6 {
   const double* value = nullptr;
 };
 
+/// Of one pass over K, C and M on one pattern (StepProducts in multiply.hpp).
+struct StepVectors {
+  const double *q, *v, *stiff_of, *inertia_of, *filter_of;
+  double shift;
+  double *bound, *rate, *stiff, *inertia, *filter;
+};
+
 struct Kernels {
   const char* isa;
   Outcome (*factor_real)(const Plan&, const Terms&, const Factors&);
@@ -101,6 +108,8 @@ struct Kernels {
                        double s, double* y);
   void (*add_multiply_size)(const Matrix6&, double s, const double* x,
                             double* y);  ///< y += s |A| x
+  /// What StepProducts says, of K, C, M (value of Matrix6 unused).
+  void (*multiply_step)(const Matrix6&, const double* const kcm[3], const StepVectors&);
 };
 
 /// The best set for the machine the program runs on.

@@ -635,10 +635,39 @@ void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
   }
 }
 
+void multiply_step(const Matrix6& m, const double* const kcm[3], const StepVectors& x) {
+  const Col shift = splat(x.shift);
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Col of_q = zero_col(), of_v = zero_col(), rate = zero_col(), stiff = zero_col(),
+        inertia = zero_col(), filter = zero_col();
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const std::ptrdiff_t j = 6 * m.cols[k];
+      for (int c = 0; c < 6; ++c) {
+        const Col stiffness = load6(kcm[0] + 36 * k + 6 * c);
+        of_q = of_q + stiffness * splat(x.q[j + c]);
+        rate = rate + stiffness * splat(x.v[j + c]);
+        stiff = stiff + stiffness * splat(x.stiff_of[j + c]);
+      }
+      for (int c = 0; c < 6; ++c) {
+        const Col damping = load6(kcm[1] + 36 * k + 6 * c), mass = load6(kcm[2] + 36 * k + 6 * c);
+        of_v = of_v + damping * splat(x.v[j + c]);
+        inertia = inertia + mass * splat(x.inertia_of[j + c]);
+        filter = filter + (damping + shift * mass) * splat(x.filter_of[j + c]);
+      }
+    }
+    store6(x.bound + 6 * i, of_q + of_v);
+    store6(x.rate + 6 * i, rate);
+    store6(x.stiff + 6 * i, stiff);
+    store6(x.inertia + 6 * i, inertia);
+    store6(x.filter + 6 * i, filter);
+  }
+}
+
 constexpr Kernels table = {
-    WHIRL_LU_ISA,           factor_any<Real>, factor_any<Cplx>, solve<Real>,    solve<Cplx>,
-    solve_complex_columns,  multiply_real,    multiply_complex, multiply_three, multiply_exact_real,
-    multiply_exact_complex, add_products,     add_multiply_size};
+    WHIRL_LU_ISA,      factor_any<Real>,      factor_any<Cplx>,       solve<Real>,
+    solve<Cplx>,       solve_complex_columns, multiply_real,          multiply_complex,
+    multiply_three,    multiply_exact_real,   multiply_exact_complex, add_products,
+    add_multiply_size, multiply_step};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include <la/lu_kernel.hpp>
 #include <core/contract.hpp>
 #include <la/multiply.hpp>
+#include <la/step_products.hpp>
 
 namespace whirl::la {
 
@@ -73,6 +74,17 @@ void add_forces(const MCK& m, const VecX& q, const VecX& v, Eigen::Ref<VecX> y) 
   const double* const values[] = {m.K.data(), m.C.data()};
   const double* const vectors[] = {q.data(), v.data()};
   lu::kernels().add_products(view(m.K), 2, values, vectors, 1.0, y.data());
+}
+
+void multiply(const MCK& m, const StepProducts& x) {
+  WHIRL_EXPECTS(x.q.size() == 6 * m.K.pattern().size() && x.v.size() == x.q.size());
+  WHIRL_EXPECTS(x.bound.size() == x.q.size() && x.filter.size() == x.q.size());
+  const double* const values[] = {m.K.data(), m.C.data(), m.M.data()};
+  const lu::StepVectors vectors{x.q.data(),          x.v.data(),         x.stiff_of.data(),
+                                x.inertia_of.data(), x.filter_of.data(), x.shift,
+                                x.bound.data(),      x.rate.data(),      x.stiff.data(),
+                                x.inertia.data(),    x.filter.data()};
+  lu::kernels().multiply_step(view(m.K), values, vectors);
 }
 
 void add_multiply_size(const BlockMatrix<6>& a, double s, const VecX& x, VecX& y) {

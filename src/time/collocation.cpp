@@ -94,7 +94,13 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
                   &end_residual_, &start_before_})
     *x = VecX::Zero(n_);
   uc_ = VecXc::Zero(n_);
-  if (affine_) work_.emplace(tab_, problem_, *affine_);
+  if (!affine_) return;
+  work_.emplace(tab_, problem_, *affine_);
+  linear_.emplace(tab_, held_);
+  bound_.resize(n_);
+  bound_end_.resize(n_);
+  products_.resize(n_);
+  start_forces_.setZero(n_);
 }
 
 bool Collocation::factor(double h) {
@@ -160,6 +166,9 @@ bool Collocation::evaluate_free_stages(double h) {
 
 std::optional<double> Collocation::residual_work() {
   if (!affine_ || !free_stages_) return std::nullopt;
+  if (linear_step_)
+    return work_->of({t0_, t0_low_, h_, v0_, a0_, nullptr, a_last_}, products_.stiff,
+                     start_forces_);
   // what a stage solved, or the initial accelerations, has no residual
   const bool at_rest = tab_.stiffly_accurate || !had_start_residual_;
   return work_->of({t0_, t0_low_, h_, v0_, a0_, at_rest ? nullptr : &start_before_, a_last_});
@@ -299,7 +308,6 @@ void Collocation::finish(double h) {
 }
 
 double Collocation::estimate(double h) {
-  const double m = tab_.mu / h;
   // rho_q = v0 - u'(0) = -(1/h) sum_ij l_i(0) (A^-1)_ij Y_j: without v0, it cancels exactly
   std::array<double, Tableau::max_stages> g{};
   for (int i = 0; i < s_; ++i)
@@ -318,45 +326,121 @@ double Collocation::estimate(double h) {
   for (Index i : held_)
     rho_q_[i] = rho_v_[i] = 0.0;
 
-  // with r = the residual at the start (or at the filtered point) on the right
-  auto filter = [&](const VecX* r) {
-    u_ = rho_v_ + m * rho_q_;
-    e_.setZero();
-    problem_.add_M(1.0, u_, e_);
-    problem_.add_C(1.0, rho_q_, e_);
-    if (r) e_ -= *r;
-    for (Index i : held_)
-      e_[i] = 0.0;
-    problem_.solve(Ref(e_));
-    ++statistics_.solves_real;
-    u_ = tab_.mu * e_ - h * rho_q_;  // h e_v
-    dq_ =
-        u_.cwiseProduct(initial_.dynamic());  // rates of massless unknowns are results, not states
-    return std::max(scale_.error_norm(e_), scale_.error_norm(dq_) * std::max(1.0, rate_span_ / h)) /
-           allowance_;
-  };
-
   const bool consistent = tab_.stiffly_accurate || first_;  // a0 solves the equations at the start
-  double error = filter(consistent ? nullptr : &start_residual_);
-  if (error > 1.0 && (first_ || retrying_)) {
-    qs_ = q0_ + e_;
-    vs_ = v0_ + u_ / h;
-    as_ = a0_;
-    for (Index i : held_) {
-      qs_[i] = q0_[i];
-      vs_[i] = v0_[i];
-    }
-    rho_q_ += u_ / h;
-    if (residual(t0_, qs_, vs_, as_, r_.col(0))) {
-      vs_ = r_.col(0);
-      error = std::min(error, filter(&vs_));
-    }
+  return taken_again(h, filtered(h, consistent ? nullptr : &start_residual_));
+}
+
+double Collocation::size_of_defect(double h, const VecX& rho_q) {
+  u_ = tab_.mu * e_ - h * rho_q;              // h e_v
+  dq_ = u_.cwiseProduct(initial_.dynamic());  // rates of massless unknowns are results, not states
+  return std::max(scale_.error_norm(e_), scale_.error_norm(dq_) * std::max(1.0, rate_span_ / h)) /
+         allowance_;
+}
+
+double Collocation::filtered(double h, const VecX* r) {
+  u_ = rho_v_ + (tab_.mu / h) * rho_q_;
+  e_.setZero();
+  problem_.add_M(1.0, u_, e_);
+  problem_.add_C(1.0, rho_q_, e_);
+  if (r) e_ -= *r;
+  for (Index i : held_)
+    e_[i] = 0.0;
+  problem_.solve(Ref(e_));
+  ++statistics_.solves_real;
+  return size_of_defect(h, rho_q_);
+}
+
+double Collocation::taken_again(double h, double error) {
+  if (!(error > 1.0) || !(first_ || retrying_)) return error;
+  qs_ = q0_ + e_;
+  vs_ = v0_ + u_ / h;
+  as_ = a0_;
+  for (Index i : held_) {
+    qs_[i] = q0_[i];
+    vs_[i] = v0_[i];
   }
-  return error;
+  rho_q_ += u_ / h;
+  if (!residual(t0_, qs_, vs_, as_, r_.col(0))) return error;
+  vs_ = r_.col(0);
+  return std::min(error, filtered(h, &vs_));
+}
+
+bool Collocation::bound_along(double h) {
+  std::array<double, Tableau::max_stages> span{}, time{};
+  const auto stages = static_cast<std::size_t>(s_);
+  for (std::size_t i = 0; i < stages; ++i) {
+    span[i] = tab_.c[i] * h;
+    time[i] = stage_time(tab_.c[i], h);
+  }
+  if (!affine_->bound_along({t0_, q0_, v0_, {span.data(), stages}, {time.data(), stages}}))
+    return false;
+  const std::optional<std::span<const Index>> entries = affine_->changing_entries();
+  if (!entries) return false;
+  const auto count = static_cast<Index>(entries->size());
+  changing_.resize(count, s_);
+  changing_start_.resize(count);
+  affine_->changing(t0_, changing_start_);
+  for (std::size_t i = 0; i < stages; ++i)
+    affine_->changing(time[i], changing_.col(static_cast<Index>(i)));
+  return true;
+}
+
+bool Collocation::attempt_linear(double h, Attempt& out) {
+  linear_step_ = free_stages_ = linear_ && bound_along(h);
+  if (!linear_step_) return false;
+  const std::span<const Index> entries = *affine_->changing_entries();
+  if (!have_bound_) affine_->multiply(t0_, q0_, v0_, bound_, products_);
+  have_bound_ = true;
+  linear_->set_step(h);
+  linear_->right_hand_sides(bound_, entries, changing_, u_, uc_);
+  if (tab_.has_real) {
+    problem_.solve(Ref(u_));
+    ++statistics_.solves_real;
+  }
+  problem_.solve(RefC(uc_));
+  ++statistics_.solves_complex;
+  statistics_.residuals += s_ + (tab_.stiffly_accurate ? 0 : 1);  // as many are known
+  ++out.iterations;
+  if (!std::isfinite(u_.sum()) || !std::isfinite(uc_.sum().real() + uc_.sum().imag())) {
+    out.status = StepStatus::newton;
+    return true;
+  }
+  const bool consistent = tab_.stiffly_accurate || first_;
+  linear_->finish(u_, uc_, {q0_, v0_, a0_, q0_low_, v0_low_}, consistent,
+                  {a_stage_, q_, v_, a_, q_low_, v_low_, dq_, products_});
+  problem_.impose(t1_eval_, q_, v_, a_);
+  scale_.begin_step(dq_);
+  affine_->multiply(t1_eval_, q_, v_, bound_end_, products_);
+  out.error = estimate_linear(h, consistent);
+  return true;
+}
+
+double Collocation::estimate_linear(double h, bool consistent) {
+  // M a0 of an inconsistent start is what its bound leaves
+  start_forces_ = products_.inertia;
+  if (!consistent) {
+    start_forces_ += bound_.force;
+    const std::span<const Index> entries = *affine_->changing_entries();
+    for (std::size_t e = 0; e < entries.size(); ++e)
+      start_forces_[entries[e]] += changing_start_[static_cast<Index>(e)];
+  }
+  e_ = products_.filter - start_forces_;
+  for (Index i : held_)
+    e_[i] = 0.0;
+  problem_.solve(Ref(e_));
+  ++statistics_.solves_real;
+  const double error = size_of_defect(h, products_.filter_of);
+  if (!(error > 1.0) || !(first_ || retrying_)) return error;
+  rho_q_ = products_.filter_of;
+  rho_v_ = consistent ? VecX(-products_.inertia_of) : VecX(a0_ - products_.inertia_of);
+  for (Index i : held_)
+    rho_v_[i] = 0.0;
+  return taken_again(h, error);
 }
 
 Stepper::Attempt Collocation::attempt(double h) {
   Attempt out;
+  if (attempt_linear(h, out)) return out;
   if (!tab_.stiffly_accurate && !first_ && !have_start_residual_) {
     have_start_residual_ = residual(t0_, q0_, v0_, a0_, start_residual_);
     if (!have_start_residual_) {
@@ -383,6 +467,13 @@ void Collocation::commit(double h) {
   h_last_ = h;
   theta_start_ = 1.0;
   have_history_ = true;
+  bound_.force.swap(bound_end_.force);
+  bound_.rate.swap(bound_end_.rate);
+  have_bound_ = linear_step_;
+  if (linear_step_) {
+    have_start_residual_ = had_start_residual_ = false;
+    return;
+  }
   start_before_.swap(start_residual_);
   start_residual_.swap(end_residual_);
   had_start_residual_ = have_start_residual_;
@@ -391,11 +482,12 @@ void Collocation::commit(double h) {
 
 void Collocation::rewind() {
   theta_start_ = 0.0;
+  have_bound_ = false;
   start_residual_.swap(start_before_);
   have_start_residual_ = had_start_residual_;
 }
 
-void Collocation::drop_history() { have_history_ = have_start_residual_ = false; }
+void Collocation::drop_history() { have_history_ = have_start_residual_ = have_bound_ = false; }
 
 template <int S, class Entry>
 void Collocation::dense_of(double theta, Index count, const Entry& entry, Ref q, Ref v,
@@ -475,6 +567,7 @@ const double* Collocation::restore_history(const double* in) {
   theta_start_ = *in++;
   have_history_ = *in++ != 0.0;
   have_start_residual_ = *in++ != 0.0;
+  have_bound_ = false;
   in = newton_.restore(in);
   std::copy_n(in, a_last_.size(), a_last_.data());
   in += a_last_.size();

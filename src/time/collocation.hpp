@@ -2,6 +2,7 @@
 // See collocation.cpp.
 #pragma once
 #include <time/affine.hpp>
+#include <time/linear_stages.hpp>
 #include <time/newton.hpp>
 #include <time/residual_work.hpp>
 #include <time/stepper.hpp>
@@ -23,6 +24,7 @@ class Collocation final : public Stepper {
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;
+  void recharted() override { have_bound_ = false; }
   /// Of count entries, the k-th is entry(k).
   template <int S, class Entry>
   void dense_of(double theta, Index count, const Entry& entry, Ref q, Ref v, Ref a) const;
@@ -40,6 +42,11 @@ class Collocation final : public Stepper {
   /// Matrices at the middle stage of the present iterate: where those of the start do not lead to
   /// the solution. false: singular.
   bool linearize_inside(double h);
+  /// The whole attempt of a linear problem that knows its bound along the step, in few passes over
+  /// the vectors; false: by residuals, like any other.
+  bool attempt_linear(double h, Attempt& out);
+  /// Whether it does; the changing entries at the start and at the stages are then known.
+  bool bound_along(double h);
   /// Residuals of all stages at the present increments into r_; false: outside the model's domain.
   bool evaluate_stages(double h);
   /// The same of a linear problem, whose increments are still zero; false: one by one.
@@ -50,12 +57,29 @@ class Collocation final : public Stepper {
   bool correct();
   void finish(double h);
   double estimate(double h);
+  double estimate_linear(double h, bool consistent);
+  /// Filters the defect rho_q_, rho_v_ with the residual r where it was taken (null: zero); its size
+  /// relative to the allowance. e_, u_ := e_q, h e_v.
+  double filtered(double h, const VecX* r);
+  /// The size of e_ and of h e_v, which follows from it.
+  double size_of_defect(double h, const VecX& rho_q);
+  /// An estimate above its allowance once more, at the filtered point, where that may help.
+  double taken_again(double h, double error);
 
   std::string_view name_;
   const Tableau& tab_;
   AffineProblem* affine_;             ///< the problem, where it is linear and says so; else null
   std::optional<ResidualWork> work_;  ///< of such a problem
   bool free_stages_ = false;          ///< held entries move freely in the last step
+  // of an affine problem that tells its bound (attempt_linear)
+  std::optional<LinearStages> linear_;
+  bool linear_step_ = false;  ///< the last attempt was one of it
+  bool have_bound_ = false;   ///< bound_ is that of the step's start
+  Bound bound_, bound_end_;
+  StepProducts products_;
+  VecX start_forces_;    ///< residual of the interpolant at the step's start
+  MatX changing_;        ///< changing entries at the stages, a column each
+  VecX changing_start_;  ///< and at the step's start
   int s_;
   double allowance_;
   NewtonMonitor newton_;

@@ -76,17 +76,20 @@ ResidualWork::ResidualWork(const Tableau& tableau, Problem& problem, AffineProbl
   }
   for (VecX* x : {&combined_, &stiff_, &first_})
     *x = VecX::Zero(problem.size());
+  const std::span<const unsigned char> works = affine.works();
+  works_.resize(static_cast<Index>(works.size()));
+  for (std::size_t i = 0; i < works.size(); ++i)
+    works_[static_cast<Index>(i)] = works[i] ? 1.0 : 0.0;
 }
 
-double ResidualWork::of_matrices(const Step& step) {
+void ResidualWork::multiply(const Step& step) {
   const int s = tab_.stages;
-  const Index n = step.v0.size();
   combined_.setZero();
   for (int j = 0; j < s; ++j)
     combined_ += tab_.poly[static_cast<std::size_t>(j)][static_cast<std::size_t>(s - 1)] *
                  step.stages.col(j);
   stiff_.setZero();
-  problem_.add_K(step.h * step.h, combined_, stiff_);
+  problem_.add_K(1.0, combined_, stiff_);
   combined_ = -step.a0;
   for (int j = 0; j < s; ++j)
     combined_ += tab_.at_zero[static_cast<std::size_t>(j)] * step.stages.col(j);
@@ -95,19 +98,28 @@ double ResidualWork::of_matrices(const Step& step) {
   else
     first_.setZero();
   problem_.add_M(1.0, combined_, first_);
+}
 
-  const std::span<const unsigned char> works = affine_.works();
-  double work = 0.0;
-  for (Index i = 0; i < n; ++i) {
-    if (!works[at(i)]) continue;
-    double with_phi = phi_ * step.v0[i], with_l0 = l0_ * step.v0[i];
-    for (int j = 0; j < s; ++j) {
-      const double rate = step.h * step.stages(i, j);
-      with_phi += phi_rate_[static_cast<std::size_t>(j)] * rate;
-      with_l0 += l0_rate_[static_cast<std::size_t>(j)] * rate;
-    }
-    work += stiff_[i] * with_phi + first_[i] * with_l0;
+double ResidualWork::of_products(const Step& step, double scale, const VecX& stiff,
+                                 const VecX& first) const {
+  // the work is linear in the rates: one sum for v0 and one for each stage
+  const Index n = step.v0.size();
+  const auto s = static_cast<std::size_t>(tab_.stages);
+  std::array<double, Tableau::max_stages> of_phi{}, of_l0{};
+  for (std::size_t j = 0; j < s; ++j) {
+    of_phi[j] = scale * step.h * phi_rate_[j];
+    of_l0[j] = step.h * l0_rate_[j];
   }
+  std::array<double, Tableau::max_stages + 1> sum{};
+  for (Index i = 0; i < n; ++i) {
+    const double with_phi = works_[i] * stiff[i], with_l0 = works_[i] * first[i];
+    sum[s] += (scale * phi_ * with_phi + l0_ * with_l0) * step.v0[i];
+    for (std::size_t j = 0; j < s; ++j)
+      sum[j] += (of_phi[j] * with_phi + of_l0[j] * with_l0) * step.stages(i, static_cast<Index>(j));
+  }
+  double work = 0.0;
+  for (const double x : sum)
+    work += x;
   return step.h * work;
 }
 
@@ -143,7 +155,15 @@ std::optional<double> ResidualWork::of(const Step& step) {
   WHIRL_EXPECTS(step.h > 0.0 && step.stages.cols() == tab_.stages);
   const std::optional<std::span<const Index>> entries = affine_.changing_entries();
   if (!entries) return std::nullopt;
-  return of_matrices(step) + of_loads(step, *entries);
+  multiply(step);
+  return of_products(step, step.h * step.h, stiff_, first_) + of_loads(step, *entries);
+}
+
+std::optional<double> ResidualWork::of(const Step& step, const VecX& stiff, const VecX& first) {
+  WHIRL_EXPECTS(step.h > 0.0 && stiff.size() == step.v0.size() && first.size() == stiff.size());
+  const std::optional<std::span<const Index>> entries = affine_.changing_entries();
+  if (!entries) return std::nullopt;
+  return of_products(step, step.h * step.h, stiff, first) + of_loads(step, *entries);
 }
 
 }  // namespace whirl::time

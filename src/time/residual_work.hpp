@@ -23,11 +23,15 @@ class ResidualWork {
   };
   /// Integral of v . R dt over the step, N m, or nothing where R is not known between the stages.
   std::optional<double> of(const Step& step);
+  /// The same where the products are known: stiff = K alpha, alpha the leading coefficient of the
+  /// accelerations' polynomial, first = R(0) of the interpolant. `start` is not read.
+  std::optional<double> of(const Step& step, const VecX& stiff, const VecX& first);
 
  private:
   static constexpr std::size_t points = 8;  ///< of the quadrature: exact to the fifteenth degree
   using AtPoints = std::array<double, points>;
-  double of_matrices(const Step& step);
+  void multiply(const Step& step);
+  double of_products(const Step& step, double scale, const VecX& stiff, const VecX& first) const;
   double of_loads(const Step& step, std::span<const Index> entries);
 
   const Tableau& tab_;
@@ -39,6 +43,7 @@ class ResidualWork {
   // integrals of phi and of l_0, alone and with the integrals of the stages' polynomials
   double phi_ = 0.0, l0_ = 0.0;
   Tableau::Vec phi_rate_{}, l0_rate_{};
+  VecX works_;                     ///< 1 or 0 of AffineProblem::works()
   VecX combined_, stiff_, first_;  // scratch
   MatX at_nodes_;
   VecX at_point_;

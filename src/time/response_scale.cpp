@@ -21,13 +21,11 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
   kinds_.assign(kinds.begin(), kinds.end());
   options_ = options;
   const auto n = static_cast<Index>(kinds_.size());
-  low_ = high_ = weight_ = inertia_ = VecX::Zero(n);
-  internal_.clear();
-  spin_.clear();
-  for (Index i = 0; i < n; ++i) {
-    if (kinds_[at(i)] == Kind::internal) internal_.push_back(i);
-    if (kinds_[at(i)] == Kind::spin_angle) spin_.push_back(i);
-  }
+  low_ = high_ = weight_ = single_weight_ = inertia_ = VecX::Zero(n);
+  for (std::vector<Index>& list : of_kind_)
+    list.clear();
+  for (Index i = 0; i < n; ++i)
+    of_kind_[of(kinds_[at(i)])].push_back(i);
   set_spin_inertia(VecX::Zero(n));
 }
 
@@ -47,22 +45,25 @@ void ResponseScale::reset(CRef q) {
 void ResponseScale::set_spin_inertia(CRef inertia) {
   WHIRL_EXPECTS(inertia.size() == inertia_.size());
   double sum = 0.0;
-  for (Index i : spin_)
+  for (const Index i : spin())
     sum += std::abs(inertia[i]);
-  for (Index i : spin_)
+  for (const Index i : spin())
     inertia_[i] = sum > 0.0 && std::isfinite(sum) ? std::abs(inertia[i]) / sum
-                                                  : 1.0 / static_cast<double>(spin_.size());
+                                                  : 1.0 / static_cast<double>(spin().size());
 }
 
 void ResponseScale::observe(CRef q) {
   WHIRL_EXPECTS(q.size() == low_.size());
-  for (Index i = 0; i < q.size(); ++i) {
-    low_[i] = std::min(low_[i], q[i]);
-    high_[i] = std::max(high_[i], q[i]);
-    double& s = swept_[of(kinds_[at(i)])];
-    s = std::max(s, 0.5 * (high_[i] - low_[i]));
-    double& size = size_[of(kinds_[at(i)])];
-    size = std::max(size, std::abs(q[i]));
+  low_ = low_.cwiseMin(q);
+  high_ = high_.cwiseMax(q);
+  for (std::size_t k = 0; k < kinds_count; ++k) {
+    double range = 0.0, size = size_[k];
+    for (const Index i : of_kind_[k]) {
+      range = std::max(range, high_[i] - low_[i]);
+      size = std::max(size, std::abs(q[i]));
+    }
+    swept_[k] = std::max(swept_[k], 0.5 * range);
+    size_[k] = size;
   }
 }
 
@@ -71,9 +72,11 @@ void ResponseScale::rebase(Index i, double q) { low_[i] = high_[i] = q; }
 void ResponseScale::begin_step(CRef dq) {
   WHIRL_EXPECTS(dq.size() == weight_.size());
   std::array<double, kinds_count> s = swept_;
-  for (Index i = 0; i < dq.size(); ++i) {
-    double& k = s[of(kinds_[at(i)])];
-    k = std::max(k, 0.5 * std::abs(dq[i]));
+  for (std::size_t k = 0; k < kinds_count; ++k) {
+    double largest = 0.0;
+    for (const Index i : of_kind_[k])
+      largest = std::max(largest, std::abs(dq[i]));
+    s[k] = std::max(s[k], 0.5 * largest);
   }
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
@@ -95,14 +98,22 @@ void ResponseScale::begin_step(CRef dq) {
         weight_[l.unknown] =
             std::max(weight_[l.unknown],
                      1.0 / std::max(l.scale, offset_share_ * size_[of(Kind::displacement)]));
+    weigh_singly();
   }
   const double floor = std::max(o.internal, o.floor_internal);
-  for (Index i : internal_)
+  for (const Index i : internal())
     weight_[i] = 1.0 / std::max({0.5 * (high_[i] - low_[i]), 0.5 * std::abs(dq[i]), floor});
-  if (!internal_.empty())
+  if (!internal().empty())
     for (const Scales::Limit& l : o.limits)
       if (kinds_[at(l.unknown)] == Kind::internal)
         weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / l.scale);
+  if (!internal().empty()) weigh_singly();
+}
+
+void ResponseScale::weigh_singly() {
+  single_weight_ = weight_;
+  for (const Index i : spin())
+    single_weight_[i] = 0.0;
 }
 
 double ResponseScale::norm(CRef x) const {
@@ -120,16 +131,13 @@ double ResponseScale::rounding() const {
 
 double ResponseScale::error_norm(CRef x) const {
   WHIRL_EXPECTS(x.size() == weight_.size());
-  double largest = 0.0, spin = 0.0;
-  for (Index i = 0; i < x.size(); ++i) {
-    if (kinds_[at(i)] == Kind::spin_angle) continue;
-    largest = std::max(largest, std::abs(x[i]) * weight_[i]);
-  }
-  for (Index i : spin_)
-    spin += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
+  const double largest = x.cwiseAbs().cwiseProduct(single_weight_).maxCoeff();
+  double turned = 0.0;
+  for (const Index i : spin())
+    turned += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
   // NaN must not be lost in a comparison
   const double sum = x.sum();
-  return std::isfinite(sum) ? std::max(largest, std::sqrt(spin)) : infinity;
+  return std::isfinite(sum) ? std::max(largest, std::sqrt(turned)) : infinity;
 }
 
 void ResponseScale::save(std::vector<double>& out) const {

@@ -49,7 +49,15 @@ class ResponseScale {
   std::array<double, kinds_count> swept_{}, size_{},
       used_{};  ///< range and size of the run so far; of the weights
   VecX low_, high_, weight_, inertia_;
-  std::vector<Index> internal_, spin_;
+  void weigh_singly();
+  VecX single_weight_;  ///< weight_, 0 for spin angles
+  std::array<std::vector<Index>, kinds_count> of_kind_;
+  const std::vector<Index>& internal() const {
+    return of_kind_[static_cast<std::size_t>(Kind::internal)];
+  }
+  const std::vector<Index>& spin() const {
+    return of_kind_[static_cast<std::size_t>(Kind::spin_angle)];
+  }
 };
 
 }  // namespace whirl::time

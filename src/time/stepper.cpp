@@ -210,36 +210,42 @@ Stepper::Target Stepper::plan(double h) {
 // ---------------------------------------------------------------------------------------------------------------------
 // One step
 
+void Stepper::take_recharted() {
+  recharted();
+  const auto kinds = problem_.kinds();
+  bool rates_changed = false;
+  for (Index i = 0; i < n_; ++i) {
+    const bool rate = v_[i] != v0_[i] || a_[i] != a0_[i];
+    rates_changed = rates_changed || rate;
+    if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
+    // whole turns leave the remainder's compensation valid, a new chart does not
+    if (rate || (q_[i] != q0_[i] && kinds[at(i)] != Kind::spin_angle)) q_low_[i] = v_low_[i] = 0.0;
+  }
+  if (!rates_changed) return;
+  drop_history();
+  refresh();
+}
+
 void Stepper::begin_step() {
-  if (accept_pending_) {
-    accept_pending_ = false;
-    q0_ = q_;
-    v0_ = v_;
-    a0_ = a_;
-    if (problem_.accept(t_, q_, v_, a_)) {
-      const auto kinds = problem_.kinds();
-      bool rates_changed = false;
-      for (Index i = 0; i < n_; ++i) {
-        const bool rate = v_[i] != v0_[i] || a_[i] != a0_[i];
-        rates_changed = rates_changed || rate;
-        if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
-        // whole turns leave the remainder's compensation valid, a new chart does not
-        if (rate || (q_[i] != q0_[i] && kinds[at(i)] != Kind::spin_angle))
-          q_low_[i] = v_low_[i] = 0.0;
-      }
-      if (rates_changed) {
-        drop_history();
-        refresh();
-      }
-    }
-  }
-  if (at_break_) {
-    at_break_ = false;
-    after_discontinuity(true);
-  }
   q0_ = q_;
   v0_ = v_;
   a0_ = a_;
+  bool changed = false;
+  if (accept_pending_) {
+    accept_pending_ = false;
+    changed = problem_.accept(t_, q_, v_, a_);
+    if (changed) take_recharted();
+  }
+  if (at_break_) {
+    at_break_ = false;
+    changed = true;
+    after_discontinuity(true);
+  }
+  if (changed) {
+    q0_ = q_;
+    v0_ = v_;
+    a0_ = a_;
+  }
   q0_low_ = q_low_;
   v0_low_ = v_low_;
   t0_ = t_;

@@ -51,6 +51,8 @@ class Stepper : public Integrator {
   virtual void rewind() = 0;
   /// What the scheme extrapolates from no longer continues smoothly (or stands in another chart).
   virtual void drop_history() = 0;
+  /// Entries of the state were written in another way after a step (whole turns, another chart).
+  virtual void recharted() {}
   /// (q, v, a) at theta = (t - t0)/h of the last step; held entries are overwritten afterwards.
   virtual void dense(double theta, Ref q, Ref v, Ref a) const = 0;
   /// Some entries of q alone; false where dense() is as cheap.
@@ -124,6 +126,8 @@ class Stepper : public Integrator {
   void linearize(double h, bool inside);
   Attempt attempt_with_recovery(double h);
   void begin_step();
+  /// The state was written in another way; q0_, v0_, a0_ are what it was.
+  void take_recharted();
   /// Sets the time of the step's end; whether that is a breakpoint.
   bool aim_at(const Target& target);
   /// Counts a failed attempt of length h, and names what failed; the length to try next.

@@ -1,6 +1,7 @@
 #include "fixtures.hpp"
 #include <gtest/gtest.h>
 #include <la/multiply.hpp>
+#include <la/step_products.hpp>
 
 using namespace whirl;
 using namespace whirl::la;
@@ -79,6 +80,17 @@ TEST(Multiply, MatchesDense) {
   y.setOnes();
   add_forces(m, x, v, acceleration, y);
   EXPECT_LT((y - three).norm(), 1e-14 * y.norm());
+
+  const VecX stiff_of = VecX::Random(54), inertia_of = VecX::Random(54),
+             filter_of = VecX::Random(54);
+  VecX bound(54), rate(54), stiff(54), inertia(54), filter(54);
+  constexpr double shift = 3.5;
+  multiply(m, {x, v, stiff_of, inertia_of, filter_of, shift, bound, rate, stiff, inertia, filter});
+  EXPECT_LT((bound - k * x - dense(m.C) * v).norm(), 1e-14 * bound.norm());
+  EXPECT_LT((rate - k * v).norm(), 1e-14 * rate.norm());
+  EXPECT_LT((stiff - k * stiff_of).norm(), 1e-14 * stiff.norm());
+  EXPECT_LT((inertia - dense(m.M) * inertia_of).norm(), 1e-14 * inertia.norm());
+  EXPECT_LT((filter - (shift * dense(m.M) + dense(m.C)) * filter_of).norm(), 1e-14 * filter.norm());
 }
 
 TEST(Multiply, ExactSumsSurviveCancellation) {

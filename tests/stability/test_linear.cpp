@@ -126,6 +126,44 @@ TEST(Linear, ResidualsAlongAFreeMotion) {
       EXPECT_LT((together.col(k) - r).cwiseAbs().maxCoeff(), 1e-9 * r.cwiseAbs().maxCoeff()) << k;
     }
   }
+  // and the bound of the state tells the residual along that motion and beside it
+  for (const bool driven : {true, false}) {
+    const system::System s = rotor(1e-4, driven);
+    const system::State start = settled(s);
+    analysis::LinearMotion small(s, {}, speed, start);
+    system::State x = steady(s, start, 0.02);
+    VecX beside = VecX::Zero(s.size()), rates = beside, accelerations = beside;
+    for (Index k = 0; k < s.size(); ++k) {
+      if (!s.active()[at(k)]) continue;
+      const double phase = static_cast<double>(k);
+      x.q[k] += 1e-6 * std::sin(1.0 + phase);
+      x.v[k] += 1e-3 * std::cos(2.0 + phase);
+      beside[k] = 1e-6 * std::sin(3.0 + phase);
+      rates[k] = 1e-3 * std::sin(4.0 + phase);
+      accelerations[k] = std::sin(5.0 + phase);
+    }
+    const double span[] = {7e-4}, time[] = {0.0207};
+    ASSERT_TRUE(small.bound_along({0.02, x.q, x.v, span, time}));
+    time::Bound bound;
+    time::StepProducts products;
+    bound.resize(s.size());
+    products.resize(s.size());
+    small.multiply(0.02, x.q, x.v, bound, products);
+    VecX told = bound.force + span[0] * bound.rate;
+    small.add_K(1.0, beside, told);
+    small.add_C(1.0, rates, told);
+    small.add_M(1.0, accelerations, told);
+    const auto entries = small.changing_entries();
+    ASSERT_TRUE(entries.has_value());
+    VecX changing(static_cast<Index>(entries->size())), r(s.size());
+    small.changing(time[0], changing);
+    for (std::size_t e = 0; e < entries->size(); ++e)
+      told[(*entries)[e]] += changing[static_cast<Index>(e)];
+    VecX q = x.q + span[0] * x.v + beside, v = x.v + rates, a = accelerations;
+    small.impose(time[0], q, v, a);
+    ASSERT_TRUE(small.residual(time[0], q, v, a, r));
+    EXPECT_LT((told - r).cwiseAbs().maxCoeff(), 1e-9 * r.cwiseAbs().maxCoeff()) << driven;
+  }
   // what is held by a law that accelerates is asked about one by one
   const system::System s = rotor(1e-4, true, make_table({0.0, 1.0}, {speed, 2.0 * speed}));
   const system::State start = settled(s);
@@ -133,6 +171,7 @@ TEST(Linear, ResidualsAlongAFreeMotion) {
   const double span[] = {1e-3}, time[] = {1e-3};
   MatX together(s.size(), 1);
   EXPECT_FALSE(small.residuals_along({0.0, start.q, start.v, span, time}, together));
+  EXPECT_FALSE(small.bound_along({0.0, start.q, start.v, span, time}));
 }
 
 // Equal steps: one factorisation serves the whole run, and angles come back with their whole turns.

@@ -3,6 +3,7 @@
 #include <core/contract.hpp>
 #include <core/error.hpp>
 #include <la/multiply.hpp>
+#include <la/step_products.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -426,6 +427,23 @@ void LinearMotion::take_bound_forces() {
   bound_v_ = v_;
   at_first_.setZero(q_.size());
   la::add_forces(matrices(), q_, v_, at_first_);
+}
+
+bool LinearMotion::bound_along(const time::FreeMotion& m) {
+  if (!system().followers().empty() || !held_move_freely(m)) return false;
+  if (!series_.sought) find_series();
+  return series_.holds;
+}
+
+void LinearMotion::multiply(double t, time::CRef q, time::CRef v, time::Bound& bound,
+                            time::StepProducts& step) {
+  WHIRL_EXPECTS(series_.holds && q.size() == q0_.size() && v.size() == q0_.size());
+  place_steady(t, q_);
+  q_ = q - q_;
+  v_ = v - v0_;
+  la::multiply(matrices(), {q_, v_, step.stiff_of, step.inertia_of, step.filter_of, step.shift,
+                            bound.force, bound.rate, step.stiff, step.inertia, step.filter});
+  bound.force += series_.mean;
 }
 
 bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r) {

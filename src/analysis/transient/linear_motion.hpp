@@ -45,6 +45,9 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
   bool is_linear() const override { return true; }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   bool residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r) override;
+  bool bound_along(const time::FreeMotion& m) override;
+  void multiply(double t, time::CRef q, time::CRef v, time::Bound& bound,
+                time::StepProducts& step) override;
   std::optional<std::span<const Index>> changing_entries() const override;
   void changing(double t, time::Ref values) const override;
   std::span<const unsigned char> works() const override { return works_; }
