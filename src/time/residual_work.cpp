@@ -101,25 +101,16 @@ void ResidualWork::multiply(const Step& step) {
 }
 
 double ResidualWork::of_products(const Step& step, double scale, const VecX& stiff,
-                                 const VecX& first) const {
+                                 const VecX& first) {
   // the work is linear in the rates: one sum for v0 and one for each stage
-  const Index n = step.v0.size();
-  const auto s = static_cast<std::size_t>(tab_.stages);
-  std::array<double, Tableau::max_stages> of_phi{}, of_l0{};
-  for (std::size_t j = 0; j < s; ++j) {
-    of_phi[j] = scale * step.h * phi_rate_[j];
-    of_l0[j] = step.h * l0_rate_[j];
+  working_stiff_ = works_.cwiseProduct(stiff);
+  working_first_ = works_.cwiseProduct(first);
+  double work = (scale * phi_ * working_stiff_ + l0_ * working_first_).dot(step.v0);
+  for (int j = 0; j < tab_.stages; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const double of_phi = scale * step.h * phi_rate_[k], of_l0 = step.h * l0_rate_[k];
+    work += (of_phi * working_stiff_ + of_l0 * working_first_).dot(step.stages.col(j));
   }
-  std::array<double, Tableau::max_stages + 1> sum{};
-  for (Index i = 0; i < n; ++i) {
-    const double with_phi = works_[i] * stiff[i], with_l0 = works_[i] * first[i];
-    sum[s] += (scale * phi_ * with_phi + l0_ * with_l0) * step.v0[i];
-    for (std::size_t j = 0; j < s; ++j)
-      sum[j] += (of_phi[j] * with_phi + of_l0[j] * with_l0) * step.stages(i, static_cast<Index>(j));
-  }
-  double work = 0.0;
-  for (const double x : sum)
-    work += x;
   return step.h * work;
 }
 

@@ -31,7 +31,7 @@ class ResidualWork {
   static constexpr std::size_t points = 8;  ///< of the quadrature: exact to the fifteenth degree
   using AtPoints = std::array<double, points>;
   void multiply(const Step& step);
-  double of_products(const Step& step, double scale, const VecX& stiff, const VecX& first) const;
+  double of_products(const Step& step, double scale, const VecX& stiff, const VecX& first);
   double of_loads(const Step& step, std::span<const Index> entries);
 
   const Tableau& tab_;
@@ -43,8 +43,8 @@ class ResidualWork {
   // integrals of phi and of l_0, alone and with the integrals of the stages' polynomials
   double phi_ = 0.0, l0_ = 0.0;
   Tableau::Vec phi_rate_{}, l0_rate_{};
-  VecX works_;                     ///< 1 or 0 of AffineProblem::works()
-  VecX combined_, stiff_, first_;  // scratch
+  VecX works_;  ///< 1 or 0 of AffineProblem::works()
+  VecX combined_, stiff_, first_, working_stiff_, working_first_;  // scratch
   MatX at_nodes_;
   VecX at_point_;
 };

@@ -33,13 +33,24 @@ class Affine final : public LinearProblem, public AffineProblem {
     }
     return !series_unknown;
   }
+  bool bound_along(const FreeMotion&) override { return tells_bound && !series_unknown; }
+  void multiply(double t, CRef q, CRef v, Bound& bound, StepProducts& step) override {
+    const MatX M = mass(), C = damping(), K = stiffness();
+    bound.force = K * q + C * v;
+    bound.force[1] -= 3.0 + 0.5 * t;
+    bound.rate = K * v;
+    bound.rate[1] -= 0.5;
+    step.stiff = K * step.stiff_of;
+    step.inertia = M * step.inertia_of;
+    step.filter = (step.shift * M + C) * step.filter_of;
+  }
   std::optional<std::span<const Index>> changing_entries() const override { return entries_; }
   void changing(double t, Ref values) const override {
     values[0] = -load(t)[0];
     values[1] = -load(t)[1];
   }
   std::span<const unsigned char> works() const override { return works_; }
-  bool series_unknown = false;
+  bool series_unknown = false, tells_bound = true;
 
  private:
   static MatX mass() { return VecX{{2.0, 1.0, 0.0, 1.0}}.asDiagonal(); }
@@ -84,8 +95,11 @@ double integrated(const Integrator& scheme, Affine& problem, double t0, double t
 class ResidualWorkOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(ResidualWorkOf, IsTheIntegralOverTheInterpolant) {
-  for (const double dt : {2e-2, 0.0}) {  // equal steps, and adaptive ones
+  for (const auto& [dt, tells_bound] :  // equal steps, and adaptive ones
+       {std::pair(2e-2, true), std::pair(2e-2, false), std::pair(0.0, true),
+        std::pair(0.0, false)}) {
     Affine problem;
+    problem.tells_bound = tells_bound;
     Options options;
     options.tolerance = 1e-3;
     options.dt_fixed = dt;
@@ -107,6 +121,39 @@ TEST_P(ResidualWorkOf, IsTheIntegralOverTheInterpolant) {
     EXPECT_GT(size, 1e-9);  // there is something to compare
     EXPECT_GT(steps, 20);
   }
+}
+
+// Steps by the bound of the state are those by residuals of their stages, estimates of errors and
+// rejections included: a load that sets in suddenly, and steps that a stop shortens.
+TEST_P(ResidualWorkOf, StepsByTheBoundAreThoseByResiduals) {
+  Affine bound, residuals;
+  residuals.tells_bound = false;
+  Options options;
+  options.tolerance = 1e-4;
+  options.t_end = 1.0;
+  options.dt_first = 0.1;  // too long: rejected
+  options.breakpoints = {0.25};
+  const auto one = make_integrator(GetParam(), bound, options);
+  const auto other = make_integrator(GetParam(), residuals, options);
+  for (Integrator* scheme : {one.get(), other.get()})
+    scheme->start(0.0, VecX{{0.01, 0.0, 0.02, 1.0}}, VecX{{0.0, 0.3, 0.0, 0.0}});
+  bool shortened = false;
+  while (one->time() < options.t_end) {
+    const StepReport a = one->advance(), b = other->advance();
+    ASSERT_TRUE(a.ok() && b.ok());
+    ASSERT_EQ(a.rejected_error, b.rejected_error);
+    EXPECT_NEAR(a.t1, b.t1, 1e-8 * b.t1);
+    EXPECT_NEAR(a.error, b.error, 1e-5 * (1.0 + b.error));
+    EXPECT_LT((one->q() - other->q()).norm(), 1e-8 * other->q().norm());
+    EXPECT_LT((one->v() - other->v()).norm(), 1e-8 * (0.1 + other->v().norm()));
+    if (shortened || a.t1 < 0.5) continue;
+    shortened = true;
+    const double stop = 0.5 * (a.t0 + a.t1);
+    ASSERT_TRUE(one->shorten_to(stop).ok() && other->shorten_to(stop).ok());
+  }
+  EXPECT_TRUE(shortened);
+  EXPECT_GT(one->statistics().rejected_error, 0);
+  EXPECT_EQ(one->statistics().rejected_error, other->statistics().rejected_error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, ResidualWorkOf, testing::Values("radau5", "gauss4", "gauss6"),
