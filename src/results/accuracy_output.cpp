@@ -4,6 +4,7 @@
 #include <analysis/study/scheme_damping.hpp>
 #include <assembly/element_section.hpp>
 #include <core/rotation.hpp>
+#include <la/block_lu.hpp>
 #include <results/frequency.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/transient_output.hpp>
@@ -92,8 +93,12 @@ class TiltOutput final : public TransientOutput {
 /// A mode that the motion can contain, and the relative error of its frequency on the mesh.
 struct Contained {
   analysis::WhirlMode mode;
-  double mesh_error = 0;
+  double mesh_error = nan;  ///< of those that judge_mesh looks at
 };
+constexpr Index lowest_modes = 4;  ///< listed however fast they are
+/// Modes up to this multiple of the largest spin are listed, and their mesh is looked at up to the
+/// other one (model::resolution_of).
+constexpr double beside_the_spin = 2.0, judged_mesh = 1.5;
 
 /// Something may drive free motions: supports whose stiffness is not symmetric, a controller.
 bool may_grow(const system::System& system, const la::MCK& m) {
@@ -111,10 +116,17 @@ bool may_grow(const system::System& system, const la::MCK& m) {
   return false;
 }
 
-/// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
-/// lowest in any case, and what grows.
-std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
-                                         double largest_spin) {
+/// Modes slower than a frequency, as far as the inertia of stiffness and mass alone tells; most where
+/// it tells nothing.
+Index modes_below(const system::System& system, const la::MCK& conservative, double frequency,
+                  Index most) {
+  la::BlockLu<double> shifted(system.pattern(), system.active());
+  if (shifted.factor(conservative, -frequency * frequency, 0.0, 1.0) != la::Status::ok) return most;
+  return std::min(shifted.negative_eigenvalues(), most);
+}
+
+/// The rotation at the end of the run, `speed` that of the reference.
+analysis::SteadyRotation rotation_at(const TransientEnd& end, double speed) {
   const run::Job& job = end.job;
   const system::State& state = end.result.end;
   analysis::SteadyRotation running;
@@ -131,21 +143,56 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
     running.control_bandwidth = std::max(running.control_bandwidth, c.bandwidth);
   running.time = state.t;
   running.hysteretic = false;  // a motion in time has its stand-in
+  return running;
+}
+
+/// The lowest modes: all up to a frequency, of twice as many as are listed in any case. Where nothing
+/// drives free motions but the rotation, what is faster need not be found: half of them take half the
+/// time.
+std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double speed,
+                                            double highest) {
+  constexpr Index most = 2 * lowest_modes;
+  analysis::ModesOptions options;
+  options.judge = may_grow(linear.system(), linear.at(speed));
+  options.count = most;
+  if (!options.judge) {
+    const la::MCK& conservative = linear.conservative_at(speed);
+    options.count =
+        std::max(lowest_modes, modes_below(linear.system(), conservative, highest, most));
+  }
+  std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, speed, options);
+  if (options.count == most) return modes;
+  const bool all = static_cast<Index>(modes.size()) == options.count &&
+                   modes.front().frequency > 0.0 && modes.back().frequency > highest;
+  if (all) return modes;
+  options.count = most;
+  return analysis::whirl_modes(linear, speed, options);
+}
+
+/// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
+/// lowest in any case, and what grows.
+std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
+                                         double largest_spin) {
+  const run::Job& job = end.job;
+  analysis::SteadyRotation running = rotation_at(end, speed);
+  std::vector<double> spin;
+  double fastest = largest_spin;
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    spin.push_back(speed * running.ratio[l]);
+    fastest = std::max(fastest, std::abs(spin.back()));
+  }
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
-  analysis::Linearizer linear(job.system(), running, o);
-  analysis::ModesOptions options;
-  options.count = 8;
-  options.judge = may_grow(job.system(), linear.at(speed));
+  analysis::Linearizer linear(job.system(), std::move(running), o);
+  std::vector<analysis::WhirlMode> modes = slow_modes(linear, speed, beside_the_spin * fastest);
   const assembly::MeshError mesh(job.model, job.mesh, job.built);
-  std::vector<double> spin;
-  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l)
-    spin.push_back(speed * running.ratio[l]);
   std::vector<Contained> out;
-  for (analysis::WhirlMode& m : analysis::whirl_modes(linear, speed, options)) {
-    const bool beyond = out.size() >= 4 && m.frequency > 2.0 * largest_spin;
+  for (analysis::WhirlMode& m : modes) {
+    const bool beyond = static_cast<Index>(out.size()) >= lowest_modes &&
+                        m.frequency > beside_the_spin * largest_spin;
     if (!(m.frequency > 0.0) || (beyond && m.growth() <= 0)) continue;
-    const double error = relative_mesh_error(mesh, linear.at(speed), m, spin);
+    const bool looked_at = out.empty() || m.frequency <= judged_mesh * largest_spin;
+    const double error = looked_at ? relative_mesh_error(mesh, linear.at(speed), m, spin) : nan;
     out.push_back({std::move(m), error});
   }
   return out;
@@ -259,9 +306,8 @@ void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& wa
   judge_damping(end, modes, speed, warnings);
 }
 
-/// Of the modes up to 1.5 times the fastest spin (model::resolution_of), the lowest one in any case.
+/// Of the modes whose mesh is looked at: the lowest one in any case.
 void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const {
-  constexpr double above_the_spin = 1.5;
   std::vector<analysis::WhirlMode> listed;
   listed.reserve(modes.size());
   for (const Contained& c : modes)
@@ -270,8 +316,7 @@ void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>&
   double largest = 0;
   std::string worst;
   for (std::size_t k = 0; k < modes.size(); ++k) {
-    const bool asked = k == 0 || modes[k].mode.frequency <= above_the_spin * steps_.largest_spin();
-    if (!asked || modes[k].mesh_error < largest) continue;
+    if (!(modes[k].mesh_error >= largest)) continue;
     largest = modes[k].mesh_error;
     worst = labels[k];
   }
@@ -283,7 +328,7 @@ void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>&
   end.section.text += fmt::format(
       "\n\nOn its elements the rotor has the frequencies up to {} times its fastest spin right to "
       "{}.",
-      above_the_spin, error_text(largest));
+      judged_mesh, error_text(largest));
   if (largest > end.job.model.mesh_accuracy)
     warn_of_coarse_mesh(end.job, end.step.name,
                         fmt::format("the frequency of {} is off by about {}, {} wanted", worst,
