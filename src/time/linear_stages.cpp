@@ -14,12 +14,13 @@ LinearStages::LinearStages(const Tableau& tableau, std::span<const Index> held)
       held_(held.begin(), held.end()) {}
 
 template <class Coefficient>
-LinearStages::Weights LinearStages::sum_of(const std::array<Weights, Tableau::max_stages>& x,
-                                           Coefficient&& c) const {
-  Weights sum{};
-  for (std::size_t j = 0; j < static_cast<std::size_t>(tab_.stages); ++j)
-    for (std::size_t k = 0; k < sum.size(); ++k)
-      sum[k] += c(j) * x[j][k];
+lanes::Weights LinearStages::sum_of(const lanes::Weights* x, Coefficient&& c) const {
+  lanes::Weights sum;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(tab_.stages); ++j) {
+    sum.real += c(j) * x[j].real;
+    sum.re += c(j) * x[j].re;
+    sum.im += c(j) * x[j].im;
+  }
   return sum;
 }
 
@@ -29,25 +30,26 @@ void LinearStages::set_step(double h) {
   h_ = h;
   const auto s = static_cast<std::size_t>(tab_.stages);
   const std::size_t last = s - 1;
-  std::array<Weights, Tableau::max_stages> y{};
+  lanes::Weights y[Tableau::max_stages];
   for (std::size_t i = 0; i < s; ++i)
     y[i] = {-tab_.x_r[i], -2.0 * tab_.x_c[i].real(), 2.0 * tab_.x_c[i].imag()};
+  lanes::Sums& w = sums_;
   for (std::size_t i = 0; i < s; ++i)
-    stage_[i] = sum_of(y, [&](std::size_t j) { return tab_.Ainv2[i][j] / (h * h); });
-  last_ = y[last];
+    w.stage[i] = sum_of(y, [&](std::size_t j) { return tab_.Ainv2[i][j] / (h * h); });
+  w.last = y[last];
   if (tab_.stiffly_accurate) {
-    increment_ = last_;
-    rate_increment_ = sum_of(y, [&](std::size_t j) { return tab_.Ainv[last][j] / h; });
-    end_ = stage_[last];
+    w.increment = w.last;
+    w.rate_increment = sum_of(y, [&](std::size_t j) { return tab_.Ainv[last][j] / h; });
+    w.end = w.stage[last];
   } else {
-    increment_ =
-        sum_of(stage_, [&](std::size_t j) { return h * h * tab_.b[j] * (1.0 - tab_.c[j]); });
-    rate_increment_ = sum_of(stage_, [&](std::size_t j) { return h * tab_.b[j]; });
-    end_ = sum_of(stage_, [&](std::size_t j) { return tab_.at_one[j]; });
+    w.increment =
+        sum_of(w.stage, [&](std::size_t j) { return h * h * tab_.b[j] * (1.0 - tab_.c[j]); });
+    w.rate_increment = sum_of(w.stage, [&](std::size_t j) { return h * tab_.b[j]; });
+    w.end = sum_of(w.stage, [&](std::size_t j) { return tab_.at_one[j]; });
   }
-  at_start_ = sum_of(stage_, [&](std::size_t j) { return tab_.at_zero[j]; });
-  leading_ = sum_of(stage_, [&](std::size_t j) { return tab_.poly[j][last]; });
-  defect_ = sum_of(y, [&](std::size_t j) {
+  w.at_start = sum_of(w.stage, [&](std::size_t j) { return tab_.at_zero[j]; });
+  w.leading = sum_of(w.stage, [&](std::size_t j) { return tab_.poly[j][last]; });
+  w.defect = sum_of(y, [&](std::size_t j) {
     double c = 0.0;
     for (std::size_t i = 0; i < s; ++i)
       c -= tab_.at_zero[i] * tab_.Ainv[i][j] / h;
@@ -83,58 +85,31 @@ void LinearStages::right_hand_sides(const Bound& bound, std::span<const Index> e
   }
 }
 
-namespace {
-
-/// sum = x + dx with the rounding error carried in low (Knuth's two-sum).
-inline void add_compensated(double x, double x_low, double dx, double& sum, double& low) {
-  const double d = dx + x_low;
-  const double s = x + d;
-  const double b = s - x;
-  low = (x - (s - b)) + (d - b);
-  sum = s;
-}
-
-}  // namespace
-
-template <int S>
-void LinearStages::finish_stages(const VecX& real, const VecXc& complex, const Start& start,
-                                 bool consistent, const End& end) const {
-  const Index n = real.size();
-  const double subtracted = consistent ? 1.0 : 0.0;
-  const auto* const z = reinterpret_cast<const double*>(complex.data());
-  const double *const u = real.data(), *const q0 = start.q.data(), *const v0 = start.v.data(),
-                      *const a0 = start.a.data(), *const q0_low = start.q_low.data(),
-                      *const v0_low = start.v_low.data();
-  double* const stages = end.stages.data();
-  double *const q = end.q.data(), *const v = end.v.data(), *const a = end.a.data(),
-                *const q_low = end.q_low.data(), *const v_low = end.v_low.data(),
-                *const last = end.last_increment.data(),
-                *const stiff = end.products.stiff_of.data(),
-                *const inertia = end.products.inertia_of.data(),
-                *const filter = end.products.filter_of.data();
-#pragma GCC ivdep
-  for (Index i = 0; i < n; ++i) {
-    const double x = u[i], re = z[2 * i], im = z[2 * i + 1], free = h_ * v0[i];
-    const auto sum = [&](const Weights& w) { return w[0] * x + w[1] * re + w[2] * im; };
-    for (int j = 0; j < S; ++j)
-      stages[j * n + i] = sum(stage_[static_cast<std::size_t>(j)]);
-    a[i] = sum(end_);
-    last[i] = free + sum(last_);
-    stiff[i] = sum(leading_);
-    inertia[i] = sum(at_start_) - subtracted * a0[i];
-    filter[i] = sum(defect_);
-    add_compensated(q0[i], q0_low[i], free + sum(increment_), q[i], q_low[i]);
-    add_compensated(v0[i], v0_low[i], sum(rate_increment_), v[i], v_low[i]);
-  }
-}
-
 void LinearStages::finish(const VecX& real, const VecXc& complex, const Start& start,
                           bool consistent, const End& end) const {
   WHIRL_EXPECTS(end.stages.rows() == real.size() && end.stages.cols() == tab_.stages);
-  if (tab_.stages == 3)
-    finish_stages<3>(real, complex, start, consistent, end);
-  else
-    finish_stages<2>(real, complex, start, consistent, end);
+  const lanes::Vectors vectors{real.size(),
+                               real.data(),
+                               reinterpret_cast<const double*>(complex.data()),
+                               start.q.data(),
+                               start.v.data(),
+                               start.a.data(),
+                               start.q_low.data(),
+                               start.v_low.data(),
+                               h_,
+                               consistent ? 1.0 : 0.0,
+                               end.stages.data(),
+                               end.q.data(),
+                               end.v.data(),
+                               end.a.data(),
+                               end.q_low.data(),
+                               end.v_low.data(),
+                               end.last_increment.data(),
+                               end.products.stiff_of.data(),
+                               end.products.inertia_of.data(),
+                               end.products.filter_of.data()};
+  const lanes::Kernels& kernels = lanes::kernels();
+  (tab_.stages == 3 ? kernels.finish_three : kernels.finish_two)(sums_, vectors);
   StepProducts& p = end.products;
   p.shift = tab_.mu / h_;
   for (const Index k : held_) {

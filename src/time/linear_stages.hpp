@@ -2,6 +2,7 @@
 // linear_stages.cpp.
 #pragma once
 #include <time/affine.hpp>
+#include <time/stage_lanes.hpp>
 #include <time/tableau.hpp>
 
 #include <span>
@@ -37,23 +38,13 @@ class LinearStages {
               const End& end) const;
 
  private:
-  /// Of the real solution and the real and imaginary parts of the complex one, the weights in a sum.
-  using Weights = std::array<double, 3>;
-  template <int S>
-  void finish_stages(const VecX& real, const VecXc& complex, const Start& start, bool consistent,
-                     const End& end) const;
   template <class Coefficient>
-  Weights sum_of(const std::array<Weights, Tableau::max_stages>& x, Coefficient&& c) const;
+  lanes::Weights sum_of(const lanes::Weights* x, Coefficient&& c) const;
 
   const Tableau& tab_;
   std::vector<Index> held_;
   double h_ = 0.0;
-  std::array<Weights, Tableau::max_stages> stage_{};  ///< accelerations of the stages
-  Weights increment_{}, rate_increment_{}, end_{};    ///< of q, v; acceleration at the end
-  Weights last_{};      ///< increment of q over free motion at the last stage
-  Weights defect_{};    ///< of q at the start
-  Weights at_start_{};  ///< the interpolant's acceleration there
-  Weights leading_{};   ///< leading coefficient of the accelerations' polynomial
+  lanes::Sums sums_;
 };
 
 }  // namespace whirl::time
