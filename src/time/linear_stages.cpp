@@ -70,7 +70,10 @@ void LinearStages::right_hand_sides(const Bound& bound, std::span<const Index> e
     of_force_c += tab_.w_c[i];
     of_rate_c += tab_.w_c[i] * (tab_.c[i] * h_);
   }
-  if (tab_.has_real) real = of_force * bound.force + of_rate * bound.rate;
+  if (tab_.has_real)
+    real = of_force * bound.force + of_rate * bound.rate;
+  else
+    real.setZero();
   complex.real() = of_force_c.real() * bound.force + of_rate_c.real() * bound.rate;
   complex.imag() = of_force_c.imag() * bound.force + of_rate_c.imag() * bound.rate;
   for (std::size_t e = 0; e < entries.size(); ++e)

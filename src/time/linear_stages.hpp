@@ -16,7 +16,7 @@ class LinearStages {
   LinearStages(const Tableau& tableau, std::span<const Index> held);
   /// Takes the length of the step, s.
   void set_step(double h);
-  /// Right-hand sides of the decoupled systems, held entries zero: real (untouched where there is no
+  /// Right-hand sides of the decoupled systems, held entries zero: real (zero where there is no
   /// real eigenvalue) and complex.
   /// @pre set_step(); changing: x of AffineProblem at the stages, a column each.
   void right_hand_sides(const Bound& bound, std::span<const Index> entries, const MatX& changing,
