@@ -125,8 +125,7 @@ class HistoryFigures {
   Turning read_turning(const std::string& shaft) const;
   Radii radii_of(std::size_t channel, const Turning& turning) const;
   std::vector<Vec2> middles_of_all(std::size_t channel) const;
-  std::vector<Vec2> means_of_two_turns(std::size_t channel,
-                                       const std::vector<double>& turned) const;
+  std::vector<Vec2> means_of_turns(std::size_t channel, const std::vector<double>& turned) const;
   static std::size_t turning_row(const Turning& turning);
   void add_amplitude(const std::string& probe, const Radii& radii, const Turning& turning,
                      const plot::DisplayUnit& unit);
@@ -264,7 +263,7 @@ HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel, const Turnin
     turned.push_back(turned.back() + std::abs(turning.phi[r] - turning.phi[r - 1]));
   const bool turns = turned.size() == rows_.size() && turned.back() >= 2.0 * two_pi;
   const std::vector<Vec2> centre =
-      turns ? means_of_two_turns(channel, turned) : middles_of_all(channel);
+      turns ? means_of_turns(channel, turned) : middles_of_all(channel);
   const std::size_t y = place(channel);
   Radii radii;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -285,31 +284,30 @@ std::vector<Vec2> HistoryFigures::middles_of_all(std::size_t channel) const {
   return std::vector<Vec2>(rows_.size(), 0.5 * (low + high));
 }
 
-/// Means over a turn before and after every row (at the ends the two nearest turns), or over sixteen
-/// rows where those are more; by the trapezoidal rule in the angle turned, rad.
-std::vector<Vec2> HistoryFigures::means_of_two_turns(std::size_t channel,
-                                                     const std::vector<double>& turned) const {
+/// Means of four turns about every row (at the ends those of the nearest four), or of sixteen rows where
+/// those are more, under a Hann window in the angle turned, rad: what grows or fades once a turn leaves
+/// less than a hundredth in them, where a plain mean of two turns keeps a tenth.
+std::vector<Vec2> HistoryFigures::means_of_turns(std::size_t channel,
+                                                 const std::vector<double>& turned) const {
   const std::size_t y = place(channel), n = rows_.size();
-  std::vector<Vec2> sum{Vec2::Zero()};
-  for (std::size_t r = 1; r < n; ++r)
-    sum.push_back(sum.back() +
-                  0.5 * (turned[r] - turned[r - 1]) *
-                      Vec2(rows_[r][y] + rows_[r - 1][y], rows_[r][y + 1] + rows_[r - 1][y + 1]));
-  const auto sum_up_to = [&](double angle) -> Vec2 {
-    const auto after = std::lower_bound(turned.begin() + 1, turned.end() - 1, angle);
-    const auto r = static_cast<std::size_t>(after - turned.begin());
-    const double part = turned[r] - turned[r - 1],
-                 share = part > 0.0 ? (angle - turned[r - 1]) / part : 0;
-    return sum[r - 1] + share * (sum[r] - sum[r - 1]);
-  };
   constexpr std::size_t few = 8;
   std::vector<Vec2> means;
   for (std::size_t r = 0; r < n; ++r) {
     const double rows_wide =
         0.5 * (turned[std::min(n - 1, r + few)] - turned[r - std::min(r, few)]);
-    const double half = std::min(std::max(two_pi, rows_wide), 0.5 * turned.back());
+    const double half = std::min(std::max(2.0 * two_pi, rows_wide), 0.5 * turned.back());
     const double middle = std::clamp(turned[r], half, turned.back() - half);
-    means.push_back((sum_up_to(middle + half) - sum_up_to(middle - half)) / (2.0 * half));
+    const auto first = std::lower_bound(turned.begin(), turned.end(), middle - half);
+    double weights = 0.0;
+    Vec2 sum = Vec2::Zero();
+    for (auto k = static_cast<std::size_t>(first - turned.begin());
+         k < n && turned[k] <= middle + half; ++k) {
+      const double wide = turned[std::min(n - 1, k + 1)] - turned[k - std::min<std::size_t>(k, 1)];
+      const double weight = wide * (1.0 + std::cos(pi * (turned[k] - middle) / half));
+      weights += weight;
+      sum += weight * Vec2(rows_[k][y], rows_[k][y + 1]);
+    }
+    means.push_back(weights > 0.0 ? Vec2(sum / weights) : Vec2(rows_[r][y], rows_[r][y + 1]));
   }
   return means;
 }
@@ -335,9 +333,8 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
                                    const Turning& turning, const plot::DisplayUnit& unit) {
   plot::Axes a;
   a.x = plot::Axis("spin" + turning.of, "rpm");
-  a.y = plot::Axis(
-      fmt::format("radius about the mean of two turns, {}", plot::to_string(convention_)),
-      unit.name);
+  a.y = plot::Axis(fmt::format("radius about the orbit's centre, {}", plot::to_string(convention_)),
+                   unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
   const std::size_t top = turning_row(turning);

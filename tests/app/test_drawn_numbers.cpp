@@ -418,25 +418,27 @@ const std::set<std::string> apart{"t_P_amplitude", "t_P_turns", "t_P_omega_phi",
 
 }  // namespace
 
-/// Distances from the mean over the turn before and after, or the two nearest turns, by 2,000 places on
-/// the straight lines between the rows.
-Values about_two_turns(const Values& y, const Values& z, const Values& phi) {
-  const auto mean = [&](const Values& u, double from) {
-    constexpr int places = 2000;
-    double sum = 0;
+/// Distances from the mean of four turns under a Hann window, those about a row or the nearest to it, by
+/// 4,000 places on the straight lines between the rows.
+Values about_the_centre(const Values& y, const Values& z, const Values& phi) {
+  const auto mean = [&](const Values& u, double middle) {
+    constexpr int places = 4000;
+    double sum = 0, weights = 0;
     for (int k = 0; k < places; ++k) {
-      const double angle = from + 2 * two_pi * (k + 0.5) / places;
+      const double x = 2.0 * (k + 0.5) / places - 1.0, angle = middle + 2.0 * two_pi * x;
       const auto after = std::lower_bound(phi.begin() + 1, phi.end() - 1, angle);
       const auto r = static_cast<std::size_t>(after - phi.begin());
       const double share = (angle - phi[r - 1]) / (phi[r] - phi[r - 1]);
-      sum += u[r - 1] + share * (u[r] - u[r - 1]);
+      const double weight = std::pow(std::cos(0.5 * pi * x), 2);
+      sum += weight * (u[r - 1] + share * (u[r] - u[r - 1]));
+      weights += weight;
     }
-    return sum / places;
+    return sum / weights;
   };
   Values radius(y.size());
   for (std::size_t r = 0; r < y.size(); ++r) {
-    const double from = std::clamp(phi[r] - two_pi, phi.front(), phi.back() - 2 * two_pi);
-    radius[r] = std::hypot(y[r] - mean(y, from), z[r] - mean(z, from));
+    const double middle = std::clamp(phi[r], phi.front() + 2 * two_pi, phi.back() - 2 * two_pi);
+    radius[r] = std::hypot(y[r] - mean(y, middle), z[r] - mean(z, middle));
   }
   return radius;
 }
@@ -470,10 +472,10 @@ TEST(DrawnNumbers, OfATransientAreThoseOfItsTables) {
   const Columns rows = run.csv(t);
   const Values rpm = values_of(rows, speed_rpm), y = values_of(rows, {{"P.y [m]", 1e3}}),
                z = values_of(rows, {{"P.z [m]", 1e3}}), phi = values_of(rows, {{"phi [rad]", 1}});
-  // about the mean of two turns, up and down apart
-  const Values radius = about_two_turns(y, z, phi);
+  // about the orbit's centre, up and down apart
+  const Values radius = about_the_centre(y, z, phi);
   const DrawnAxes amplitude = test::drawn(run.folder / "r/plots/t_P_amplitude.svg").at(0);
-  EXPECT_EQ(amplitude.y_title, "radius about the mean of two turns, 0-peak [mm]");
+  EXPECT_EQ(amplitude.y_title, "radius about the orbit's centre, 0-peak [mm]");
   for (const Rows part : {Rows::rising, Rows::falling}) {
     const DrawnCurve* c = amplitude.curve(part == Rows::rising ? "speed rising" : "speed falling");
     ASSERT_TRUE(c);
