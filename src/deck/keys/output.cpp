@@ -10,8 +10,8 @@ namespace {
 void compression_of(Visitor& v, model::VtkOutput& o) {
   const bool given = v.choice(optional("compression", "lz4, in a .vtkhdf file zlib"), o.compression,
                               {{"none", "as they are"},
-                               {"lz4", "half the size for a fifth more time; in .vtp files alone"},
-                               {"zlib", "a third less again for several times the time"}},
+                               {"lz4", "half the size for next to no time; in .vtp files alone"},
+                               {"zlib", "a third less again for six times the time"}},
                               "how the numbers are packed in the files; they are the same in all");
   if (!o.one_file) return;
   if (!given)
