@@ -245,9 +245,9 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
     const double least = c.narrow ? 0.5 : 0.7;
-    const double size =
-        label_size *
-        std::clamp((b.h + 24) / std::max(1.0, wide_fonts * text_width(t, label_size)), least, 1.0);
+    const double beyond = c.narrow ? 8 : 24;  // the legend of a narrow drawing is below the frame
+    const double wide = std::max(1.0, wide_fonts * text_width(t, label_size));
+    const double size = label_size * std::clamp((b.h + beyond) / wide, least, 1.0);
     c.text(x, y, t, size, "middle",
            "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) +
                " " + number_text(y) + ")\"");
