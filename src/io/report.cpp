@@ -4,6 +4,7 @@
 #include <plot/plots.hpp>
 #include <plot/svg.hpp>
 #include <core/text.hpp>
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -478,8 +479,7 @@ std::string card_css(const Report& r) {
       columns = std::max(columns, t.columns.size());
   std::string s = "@media screen and (max-width: 600px) {\n";
   for (std::size_t k = 1; k <= columns; ++k) {
-    const std::string n = std::to_string(k);
-    s += ".cards td:nth-child(" + n + ")::before { content: var(--n" + n + "); }\n";
+    s += fmt::format(".cards td:nth-child({0})::before {{ content: var(--n{0}); }}\n", k);
   }
   return s + "}\n";
 }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 namespace whirl::results {
 
@@ -55,6 +56,49 @@ plot::Figure figure(const model::Step& step, const std::string& name, std::strin
     f.axes[i].share_x = true;
   return f;
 }
+
+/// Means of a path over the angle turned, rad, under Hann windows of one width: sums of what the window
+/// consists of, 1 and the cosine and sine of the angle, from the first row on.
+class HannMeans {
+ public:
+  /// half: of the window's width, rad. turned: increasing, one a point.
+  HannMeans(std::span<const double> turned, std::span<const Vec2> path, double half)
+      : turned_(turned),
+        half_(half) {
+    const std::size_t n = turned.size();
+    sums_.reserve(n + 1);
+    sums_.emplace_back();
+    for (std::size_t k = 0; k < n; ++k) {
+      const double wide = turned[std::min(n - 1, k + 1)] - turned[k - std::min<std::size_t>(k, 1)];
+      const double angle = pi / half * (turned[k] - turned.front());
+      const Eigen::Vector3d part = wide * Eigen::Vector3d(1.0, std::cos(angle), std::sin(angle));
+      const Sums& last = sums_.back();
+      sums_.push_back({last.weight + part, last.path + path[k] * part.transpose()});
+    }
+  }
+  /// About an angle, or the nearest at which the window lies within the path.
+  Vec2 about(double angle) const {
+    const double middle =
+        std::max(turned_.front() + half_, std::min(angle, turned_.back() - half_));
+    const auto first = std::lower_bound(turned_.begin(), turned_.end(), middle - half_);
+    const auto last = std::upper_bound(first, turned_.end(), middle + half_);
+    const Sums& before = sums_[static_cast<std::size_t>(first - turned_.begin())];
+    const Sums& behind = sums_[static_cast<std::size_t>(last - turned_.begin())];
+    const double phase = pi / half_ * (middle - turned_.front());
+    const Eigen::Vector3d window(1.0, std::cos(phase), std::sin(phase));
+    return (behind.path - before.path) * window / window.dot(behind.weight - before.weight);
+  }
+
+ private:
+  /// Of 1, the cosine and the sine, with the widths of the rows as weights.
+  struct Sums {
+    Eigen::Vector3d weight = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 2, 3> path = Eigen::Matrix<double, 2, 3>::Zero();
+  };
+  std::span<const double> turned_;
+  double half_;
+  std::vector<Sums> sums_;
+};
 
 /// Diagonal of the box about the nodes, m; 1 where all stand at one place.
 double size_of(const meshes::Mesh& mesh) {
@@ -290,24 +334,24 @@ std::vector<Vec2> HistoryFigures::middles_of_all(std::size_t channel) const {
 std::vector<Vec2> HistoryFigures::means_of_turns(std::size_t channel,
                                                  const std::vector<double>& turned) const {
   const std::size_t y = place(channel), n = rows_.size();
+  std::vector<Vec2> path;
+  for (const auto& r : rows_)
+    path.emplace_back(r[y], r[y + 1]);
+  const double common = std::min(2.0 * two_pi, 0.5 * turned.back());
+  const HannMeans of_turns(turned, path, common);
   constexpr std::size_t few = 8;
   std::vector<Vec2> means;
   for (std::size_t r = 0; r < n; ++r) {
-    const double rows_wide =
-        0.5 * (turned[std::min(n - 1, r + few)] - turned[r - std::min(r, few)]);
-    const double half = std::min(std::max(2.0 * two_pi, rows_wide), 0.5 * turned.back());
-    const double middle = std::clamp(turned[r], half, turned.back() - half);
-    const auto first = std::lower_bound(turned.begin(), turned.end(), middle - half);
-    double weights = 0.0;
-    Vec2 sum = Vec2::Zero();
-    for (auto k = static_cast<std::size_t>(first - turned.begin());
-         k < n && turned[k] <= middle + half; ++k) {
-      const double wide = turned[std::min(n - 1, k + 1)] - turned[k - std::min<std::size_t>(k, 1)];
-      const double weight = wide * (1.0 + std::cos(pi * (turned[k] - middle) / half));
-      weights += weight;
-      sum += weight * Vec2(rows_[k][y], rows_[k][y + 1]);
+    const std::size_t from = r - std::min(r, few), to = std::min(n - 1, r + few);
+    const double half = std::min(0.5 * (turned[to] - turned[from]), 0.5 * turned.back());
+    if (half <= common) {
+      means.push_back(of_turns.about(turned[r]));
+      continue;
     }
-    means.push_back(weights > 0.0 ? Vec2(sum / weights) : Vec2(rows_[r][y], rows_[r][y + 1]));
+    const std::size_t first = from - std::min(from, few), count = std::min(n, to + few + 1) - first;
+    const HannMeans of_rows(std::span<const double>(turned).subspan(first, count),
+                            std::span<const Vec2>(path).subspan(first, count), half);
+    means.push_back(of_rows.about(turned[r]));
   }
   return means;
 }

@@ -43,27 +43,13 @@ Vertex top_of(const std::array<double, OrbitWidth::looks>& f) {
   return p > look.value ? Vertex{x, p} : look;
 }
 
-/// What the values do not exceed between looks: the largest, and twice what the parabola through it
-/// and its neighbours rises above it.
-double reach_of(const std::array<double, OrbitWidth::looks>& f) {
-  const auto top = static_cast<std::size_t>(std::max_element(f.begin(), f.end()) - f.begin());
-  const std::size_t middle = std::clamp<std::size_t>(top, 1, f.size() - 2);
-  const double slope = 0.5 * (f[middle + 1] - f[middle - 1]);
-  const double curvature = 2.0 * f[middle] - f[middle + 1] - f[middle - 1];
-  if (!(std::abs(slope) <= 2.0 * curvature)) return f[top];
-  const double vertex = curvature > 0.0 ? f[middle] + 0.5 * slope * slope / curvature : f[middle];
-  return f[top] + 2.0 * std::max(0.0, vertex - f[top]);
-}
-
-/// Unit vectors of the directions.
-template <std::size_t N>
-const std::array<Vec2, N>& units() {
+/// Unit vectors of the directions, a row each.
+template <int N>
+const Eigen::Matrix<double, N, 2>& units() {
   static const auto all = [] {
-    std::array<Vec2, N> u;
-    for (std::size_t k = 0; k < N; ++k) {
-      const double angle = pi * static_cast<double>(k) / static_cast<double>(N);
-      u[k] = Vec2(std::cos(angle), std::sin(angle));
-    }
+    Eigen::Matrix<double, N, 2> u;
+    for (int k = 0; k < N; ++k)
+      u.row(k) << std::cos(pi * k / N), std::sin(pi * k / N);
     return u;
   }();
   return all;
@@ -74,7 +60,7 @@ const std::array<Vec2, N>& units() {
 OrbitWidth::Extent OrbitWidth::at(const Vec2& u, double t) {
   Extent e;
   for (std::size_t k = 0; k < directions; ++k) {
-    e.low[k] = e.high[k] = units<directions>()[k].dot(u);
+    e.low[k] = e.high[k] = units<directions>().row(static_cast<Index>(k)).dot(u);
     e.t_low[k] = e.t_high[k] = t;
   }
   e.empty = false;
@@ -89,21 +75,32 @@ void OrbitWidth::begin(const Vec2& u, double t, double phi) {
 }
 
 void OrbitWidth::step(std::span<const Vec2, looks> seen, double t0, double t1) {
+  using Widths = Eigen::Array<double, directions, 1>;
+  Eigen::Matrix<double, 2, looks> path;
+  for (std::size_t i = 0; i < looks; ++i)
+    path.col(static_cast<Index>(i)) = seen[i];
+  const Eigen::Matrix<double, directions, looks> projections = units<directions>() * path;
+  const Widths most = projections.rowwise().maxCoeff(), least = projections.rowwise().minCoeff();
+  // a path of four looks a period passes the largest of them by a fifth of what it spans
+  const Widths beyond = 0.25 * (most - least);
+  const Eigen::Map<Widths> high(now_.high.data()), low(now_.low.data());
+  if (!((most + beyond > high) || (least - beyond < low)).any()) return;
   const auto time_of = [&](double x) { return t0 + (t1 - t0) * x / 4.0; };
-  for (std::size_t k = 0; k < directions; ++k) {
-    const Vec2& direction = units<directions>()[k];
-    std::array<double, looks> up, down;
-    for (std::size_t i = 0; i < looks; ++i) {
-      up[i] = direction.dot(seen[i]);
-      down[i] = -up[i];
-    }
-    if (reach_of(up) > now_.high[k])
-      if (const Vertex v = top_of(up); v.value > now_.high[k]) {
+  for (Index d = 0; d < directions; ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    std::array<double, looks> values;
+    const auto take = [&](double sense) {
+      for (std::size_t i = 0; i < looks; ++i)
+        values[i] = sense * projections(d, static_cast<Index>(i));
+      return top_of(values);
+    };
+    if (most[d] + beyond[d] > now_.high[k])
+      if (const Vertex v = take(1.0); v.value > now_.high[k]) {
         now_.high[k] = v.value;
         now_.t_high[k] = time_of(v.x);
       }
-    if (reach_of(down) > -now_.low[k])
-      if (const Vertex v = top_of(down); v.value > -now_.low[k]) {
+    if (least[d] - beyond[d] < now_.low[k])
+      if (const Vertex v = take(-1.0); - v.value < now_.low[k]) {
         now_.low[k] = -v.value;
         now_.t_low[k] = time_of(v.x);
       }

@@ -16,7 +16,7 @@ namespace whirl::analysis {
 class OrbitWidth {
  public:
   /// Looks at the path in a step, equally spaced, its two ends among them.
-  static constexpr std::size_t looks = 5;
+  static constexpr int looks = 5;
 
   /// u: place, m; t: s; phi: angle the shaft has turned, rad.
   void begin(const Vec2& u, double t, double phi);
@@ -32,7 +32,7 @@ class OrbitWidth {
   void restore(InArchive& in);
 
  private:
-  static constexpr std::size_t directions = 8;  ///< k 180 / 8 degrees from y towards z
+  static constexpr int directions = 8;  ///< k 180 / 8 degrees from y towards z
   /// Of the projections on the directions: where they end, m, and when they were there, s.
   struct Extent {
     std::array<double, directions> low{}, high{}, t_low{}, t_high{};
