@@ -262,11 +262,18 @@ void AccuracyOutput::judge_energy(TransientEnd& end, std::vector<std::string>& w
       tolerance, end.result.seconds, s.error_mean(), s.error_max, energy_.worst_defect(), defect,
       measure);
   // an amplitude error of a percent is an energy error of two
+  constexpr double doubtful = 0.02;
+  const bool rounding = energy_.worst_defect() <= energy_.rounding();
+  if (energy_.known() && defect > doubtful && rounding)
+    end.section.text += fmt::format(
+        " Rounding of the energies and of the drives' torques alone may reach {:.2g} J: here the "
+        "balance says nothing of the amplitudes.",
+        energy_.rounding());
   if (!energy_.known())
     warnings.push_back(
         "the motion leaves the range in which the energies of its supports are defined (a film's "
         "clearance, a table): its energy balance is not known");
-  else if (defect > 0.02 && energy_.worst_defect() > energy_.rounding())
+  else if (defect > doubtful && !rounding)
     warnings.push_back(fmt::format(
         "the energy balance is off by {:.2g} of the energy {} ({:.1g} of all energy): do not trust "
         "the amplitudes of vibration; try a smaller tolerance",

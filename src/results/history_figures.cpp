@@ -73,11 +73,14 @@ class HannMeans {
       const double angle = pi / half * (turned[k] - turned.front());
       const Eigen::Vector3d part = wide * Eigen::Vector3d(1.0, std::cos(angle), std::sin(angle));
       const Sums& last = sums_.back();
-      sums_.push_back({last.weight + part, last.path + path[k] * part.transpose()});
+      const int turned_on = wide > 1e-6 * half ? 1 : 0;
+      sums_.push_back(
+          {last.weight + part, last.path + path[k] * part.transpose(), last.points + turned_on});
     }
   }
-  /// About an angle, or the nearest at which the window lies within the path.
-  Vec2 about(double angle) const {
+  /// About an angle, or the nearest at which the window lies within the path; none where less
+  /// than eight points stand apart in it: a shaft that stands after turns of which few are known.
+  std::optional<Vec2> about(double angle) const {
     const double middle =
         std::max(turned_.front() + half_, std::min(angle, turned_.back() - half_));
     const auto first = std::lower_bound(turned_.begin(), turned_.end(), middle - half_);
@@ -86,6 +89,8 @@ class HannMeans {
     const Sums& behind = sums_[static_cast<std::size_t>(last - turned_.begin())];
     const double phase = pi / half_ * (middle - turned_.front());
     const Eigen::Vector3d window(1.0, std::cos(phase), std::sin(phase));
+    constexpr int fewest = 8;
+    if (behind.points - before.points < fewest) return std::nullopt;
     return (behind.path - before.path) * window / window.dot(behind.weight - before.weight);
   }
 
@@ -94,11 +99,22 @@ class HannMeans {
   struct Sums {
     Eigen::Vector3d weight = Eigen::Vector3d::Zero();
     Eigen::Matrix<double, 2, 3> path = Eigen::Matrix<double, 2, 3>::Zero();
+    int points = 0;  ///< that stand apart from their neighbours
   };
   std::span<const double> turned_;
   double half_;
   std::vector<Sums> sums_;
 };
+
+/// Of the box about a path.
+Vec2 middle_of(std::span<const Vec2> path) {
+  Vec2 low = Vec2::Constant(infinity), high = Vec2::Constant(-infinity);
+  for (const Vec2& u : path) {
+    low = low.cwiseMin(u);
+    high = high.cwiseMax(u);
+  }
+  return 0.5 * (low + high);
+}
 
 /// Diagonal of the box about the nodes, m; 1 where all stand at one place.
 double size_of(const meshes::Mesh& mesh) {
@@ -319,13 +335,10 @@ HistoryFigures::Radii HistoryFigures::radii_of(std::size_t channel, const Turnin
 
 /// The middle of what a shaft that hardly turns passes through, for every row.
 std::vector<Vec2> HistoryFigures::middles_of_all(std::size_t channel) const {
-  Vec2 low = Vec2::Constant(infinity), high = Vec2::Constant(-infinity);
-  for (const auto& r : rows_) {
-    const Vec2 u(r[place(channel)], r[place(channel) + 1]);
-    low = low.cwiseMin(u);
-    high = high.cwiseMax(u);
-  }
-  return std::vector<Vec2>(rows_.size(), 0.5 * (low + high));
+  std::vector<Vec2> path;
+  for (const auto& r : rows_)
+    path.emplace_back(r[place(channel)], r[place(channel) + 1]);
+  return std::vector<Vec2>(rows_.size(), middle_of(path));
 }
 
 /// Means of four turns about every row (at the ends those of the nearest four), or of sixteen rows where
@@ -344,14 +357,18 @@ std::vector<Vec2> HistoryFigures::means_of_turns(std::size_t channel,
   for (std::size_t r = 0; r < n; ++r) {
     const std::size_t from = r - std::min(r, few), to = std::min(n - 1, r + few);
     const double half = std::min(0.5 * (turned[to] - turned[from]), 0.5 * turned.back());
+    std::optional<Vec2> mean;
     if (half <= common) {
-      means.push_back(of_turns.about(turned[r]));
-      continue;
+      mean = of_turns.about(turned[r]);
+    } else {
+      const std::size_t first = from - std::min(from, few);
+      const std::size_t count = std::min(n, to + few + 1) - first;
+      const HannMeans of_rows(std::span<const double>(turned).subspan(first, count),
+                              std::span<const Vec2>(path).subspan(first, count), half);
+      mean = of_rows.about(turned[r]);
     }
-    const std::size_t first = from - std::min(from, few), count = std::min(n, to + few + 1) - first;
-    const HannMeans of_rows(std::span<const double>(turned).subspan(first, count),
-                            std::span<const Vec2>(path).subspan(first, count), half);
-    means.push_back(of_rows.about(turned[r]));
+    means.push_back(mean ? *mean
+                         : middle_of(std::span<const Vec2>(path).subspan(from, to - from + 1)));
   }
   return means;
 }

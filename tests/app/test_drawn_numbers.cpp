@@ -978,3 +978,67 @@ TEST(DrawnNumbers, OfBearingsAgainstSpeedAreThoseOfTheirTable) {
   for (const Shown& s : table_bearing)
     expect_shown(table, s);
 }
+
+// Turned fast with few rows a turn, then stopped: the orbit at rest has its own centre, not that of four
+// turns that were over long before.
+TEST(DrawnNumbers, AShaftThatStandsComesToRest) {
+  const DeckRun run(R"(format = 1
+[[shaft]]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 300, 40], ["b", 200, 40]]
+[[disk]]
+name = "D"
+at = "a:end"
+mass = "5 kg"
+Ip = "0.02 kg.m^2"
+Id = "0.012 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kyy = "4e6 N/m"
+kzz = "3e6 N/m"
+cyy = "500 N.s/m"
+czz = "500 N.s/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "4e6 N/m"
+kzz = "3e6 N/m"
+cyy = "500 N.s/m"
+czz = "500 N.s/m"
+[[unbalance]]
+at = "D"
+amount = "100 g.mm"
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = { type = "ramp", time = ["0 s", "0.4 s", "0.45 s"], value = ["30000 rpm", "30000 rpm", "0 rpm"] }
+[[probe]]
+name = "P"
+at = "D"
+[[step]]
+name = "t"
+type = "transient"
+duration = "1 s"
+initial_speed = "30000 rpm"
+[output]
+every = "20 ms"
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const DrawnAxes a = test::drawn(run.folder / "r/plots/t_P_amplitude.svg").at(0);
+  const DrawnCurve* c = a.curve("speed falling");
+  ASSERT_TRUE(c);
+  const double bottom = a.box[1] + a.box[3];
+  const auto radius_of = [&](const Pixel& p) {
+    return (bottom - p.y) / a.box[3] * (a.y[1] - a.y[0]);
+  };
+  double largest = 0, at_rest = infinity;
+  for (const Pixel& p : c->points) {
+    largest = std::max(largest, radius_of(p));
+    if (p.x < a.place(100, 0).x) at_rest = std::min(at_rest, radius_of(p));
+  }
+  EXPECT_GT(largest, 20.0);  // rings when it has stopped
+  EXPECT_LT(at_rest, 0.25);  // um; the sag is 24
+}

@@ -2,6 +2,8 @@
 // those of small motions: the balance closes, and the drive's work is in it.
 #include "deck_run.hpp"
 
+#include <io/file.hpp>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -289,6 +291,7 @@ TEST(EnergyBalance, AJumpOfThePrescribedSpeedIsSupplied) {
 
 // What a drive supplies to a rotor that only turns is rounding: of large angles on a stiff shaft.
 TEST(EnergyBalance, UndisturbedRotationIsNoAlarm) {
+  int said = 0;  // where the defect is small beside the energy of the motion there is no need
   for (const char* speed : {"300 rpm", "30000 rpm"})
     for (const char* duration : {"0.05 s", "5 s"})
       for (const char* diameter : {"10", "200"}) {
@@ -301,10 +304,13 @@ TEST(EnergyBalance, UndisturbedRotationIsNoAlarm) {
             "\"2e7 N/m\"\n[[bearing]]\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"1e7 N/m\"\n"
             "kzz = \"2e7 N/m\"\n[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"" +
             speed + "\"\n[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"" + duration +
-            "\"\n[output]\nreport = false\ncsv = false\n");
+            "\"\n[output]\ncsv = false\n");
         ASSERT_EQ(d.exit, 0) << d.log;
         EXPECT_FALSE(d.says("energy balance")) << d.log;
+        const std::string report = whirl::io::read_text(d.folder / "r" / "report.html");
+        said += report.find("says nothing of the amplitudes") != std::string::npos;
       }
+  EXPECT_GT(said, 0);
 }
 
 // Steps of a tenth of a turn with a scheme that damps: the amplitude is not to be trusted, and said so.
