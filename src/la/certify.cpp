@@ -200,13 +200,22 @@ bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
 }
 
 bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
-  const auto is_copy = [&](Complex place) {
-    return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
-      return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
-             std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
-    });
-  };
-  return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
+  // Rounding spreads the places of a cluster, not their mean.
+  constexpr double apart = 0.05, mean_apart = 1e-2;
+  double sum = 0.0, weight = 0.0;
+  for (const Complex place : places) {
+    const double with_conjugate = place.imag() > 0.0 ? 2.0 : 1.0;
+    sum += with_conjugate * place.real();
+    weight += with_conjugate;
+  }
+  const double mean = sum / weight;
+  return !places.empty() && std::any_of(known.begin(), known.end(), [&](const Pair& p) {
+    const double size = std::abs(p.lambda);
+    return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
+           std::abs(p.lambda.real() - mean) < mean_apart * size &&
+           std::all_of(places.begin(), places.end(),
+                       [&](Complex place) { return std::abs(p.lambda - place) < apart * size; });
+  });
 }
 
 bool ModeSolver::Impl::only_zeros_missing() {

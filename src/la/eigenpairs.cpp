@@ -135,6 +135,7 @@ bool Eigenpairs::add(Pair&& p) {
     p.Kx = p.Kx.conjugate().eval();
   }
   polisher.assess(p);
+  if (!(p.residual < unproved)) return false;
   if (!complex_shift()) make_real(p);
   constexpr double apart = 1e-7;
   if (spanned(p, known_near(p, apart, true))) return false;

@@ -20,8 +20,9 @@ struct Eigenpairs : ShiftedOperator {
   /// pair a rounding error apart: two candidates then, of its real and imaginary parts.
   void suggest(std::vector<Pair>& found, Complex lambda, const VecXc& z, bool real_problem,
                std::vector<VecXc>* vectors) const;
-  /// Adds a polished pair unless it is already there: its vector in the span of those with the same
-  /// eigenvalue.
+  static constexpr double unproved = 1e-8;  ///< backward error of what is no root
+  /// Adds a polished pair unless it is no root, or already there: its vector in the span of those
+  /// with the same eigenvalue.
   bool add(Pair&& p);
   /// Those whose eigenvalues are no further off than that share of it, or than they are uncertain; free
   /// motions among them or not.

@@ -19,7 +19,6 @@ struct ModeSolver::Impl : Eigenpairs {
   std::optional<RootCounter> counter;
   double fastest_root = 0.0;  ///< rad/s, of a problem solved whole and certified; 0: it was not
   Certificate certificate;
-  static constexpr double unproved = 1e-8;  ///< backward error
 
   template <class Scalar>
   void lock_known(Krylov<Scalar>& k);
