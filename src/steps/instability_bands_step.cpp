@@ -91,6 +91,17 @@ std::string text_of(const BandResult& r) {
   return text;
 }
 
+/// What is known of the motions at the speeds looked at.
+std::string counts_of(const BandResult& r) {
+  if (r.complete())
+    return fmt::format(
+        "certified at {} speeds: roots counted up to {:.5g} Hz in axes that turn with "
+        "the rotor",
+        r.counted, to_hz(r.counted_to));
+  return fmt::format("not certified: at {} of {} speeds eigenvalues were searched for, not counted",
+                     r.uncounted, r.counted + r.uncounted);
+}
+
 void add_band_table(results::FrequencyStep& s, const BandResult& r) {
   io::Table table;
   table.title = "Bands of instability";
@@ -216,12 +227,12 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                                   "the shaft in the mean, not with its vibration"
                                 : "Neither the shaft nor its supports are isotropic",
                         axes.harmonics());
-  std::string known =
-      "not certified: the eigenvalues at each speed are searched for, not counted, and bands "
-      "narrower than the distance of the speeds are found at critical speeds only";
-  known += fmt::format("; growth below {:.0e} of the speed is taken for none",
-                       analysis::unnoticed_share(axes));
-  std::string in_short = "not certified: eigenvalues searched for, not counted";
+  std::string known = counts_of(r);
+  std::string in_short = known;
+  known += fmt::format(
+      "; bands narrower than the distance of the speeds are found at critical speeds only; growth "
+      "below {:.0e} of the speed is taken for none",
+      analysis::unnoticed_share(axes));
   if (!axes.constant()) {
     const Truncation cut = find_truncation(s, law, r, axes);
     known += fmt::format(
@@ -235,7 +246,8 @@ void run_instability_bands(run::Job& job, const model::Step& step,
     v["harmonics"] = cut.harmonics;
     v["change of growth with two more [1/s]"] = cut.change;
   }
-  s.summary()["certificate"]["complete"] = false;
+  s.summary()["certificate"]["complete"] = r.complete();
+  if (r.complete()) s.summary()["certificate"]["up to [Hz]"] = to_hz(r.counted_to);
   s.summary()["certificate"]["text"] = known;
   s.section.text = results::capital(line) + ". " + why + " " + results::capital(known) + ".";
   s.finish(line + " (" + in_short + ")");

@@ -89,6 +89,18 @@ double floquet(double Omega, double c, double ky, double kz, int steps = 300) {
 
 }  // namespace
 
+// Tilting of the disk is damped by nothing: outside the band the fastest motion neither grows nor
+// decays, at every speed, and all motions are counted.
+TEST(AsymmetricShaft, UndampedTiltingIsInEveryCount) {
+  const BandResult r = bands(jeffcott(100), 200, 420, 41);
+  EXPECT_TRUE(r.complete());
+  EXPECT_GE(r.counted, 41);
+  EXPECT_LT(r.counted_to, infinity);
+  for (std::size_t k = 0; k < r.speeds.size(); ++k)
+    if (r.speeds[k] < 300.7 || r.speeds[k] > 330.9)
+      EXPECT_NEAR(r.growth[k], 0.0, 1e-6) << r.speeds[k];
+}
+
 TEST(AsymmetricShaft, BandOnEqualSupports) {
   test::Record record("Asymmetric shaft on equal supports: band of instability",
                       "closed form (k1 - m W^2)(k2 - m W^2) + c^2 W^2 = 0 of a disk on a shaft "

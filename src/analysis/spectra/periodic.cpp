@@ -415,7 +415,9 @@ class BandSearch {
     ++evaluations;
     const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
     Growth best{-infinity, 0, {}};
-    for (la::Mode x : solver_.solve(m)) {
+    const std::vector<la::Mode>& modes = solver_.solve(m);
+    note_count(solver_.certificate());
+    for (la::Mode x : modes) {
       if (!is_motion(x)) continue;
       settle(Omega, x);
       if (x.lambda.real() > best.rate) best = growth_of(x);
@@ -464,8 +466,19 @@ class BandSearch {
   /// Growth that says nothing.
   double noise(double Omega) const { return unnoticed_share(axes_) * std::abs(axes_.speed(Omega)); }
   Index evaluations = 0;
+  Index counted = 0, uncounted = 0;  ///< calls of at() with and without a complete count
+  double counted_to = infinity;      ///< rad/s, rotating axes, the least of all counts
 
  private:
+  /// Damping that depends on the rate of each motion leaves no matrices whose roots could be counted.
+  void note_count(const la::Certificate& c) {
+    if (axes_.hysteretic() || !c.complete()) {
+      ++uncounted;
+      return;
+    }
+    ++counted;
+    counted_to = std::min(counted_to, c.radius);
+  }
   /// Neither a copy nor a rigid motion.
   bool is_motion(const la::Mode& x) const {
     return axes_.constant_share(x.x) >= 0.2 && std::abs(x.lambda) != 0.0;
@@ -542,6 +555,7 @@ class BandSearch {
   static la::ModeOptions options(const RotatingAxes& axes, const BandOptions& o) {
     la::ModeOptions l;
     l.count = o.modes * (2 * axes.harmonics() + 1);
+    l.certify = l.growing = true;
     return l;
   }
   RotatingAxes& axes_;
@@ -677,6 +691,9 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     k = last;
   }
   out.evaluations = search.evaluations;
+  out.counted = search.counted;
+  out.uncounted = search.uncounted;
+  out.counted_to = search.counted_to;
   return out;
 }
 

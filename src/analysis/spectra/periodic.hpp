@@ -104,6 +104,10 @@ struct BandResult {
       frequency;  ///< largest real part (1/s) of the motions, and its frequency in rotating axes
   std::vector<InstabilityBand> bands;
   Index evaluations = 0;  ///< speeds looked at on the way, edges and maxima included
+  /// Speeds at which the motions were counted too, by an independent method, and at which not.
+  Index counted = 0, uncounted = 0;
+  double counted_to = infinity;  ///< rad/s, rotating axes: least frequency that the counts reach
+  bool complete() const { return uncounted == 0; }
 };
 
 /// Growth, as a share of the speed, that is taken for none: what harmonics left out of Hill's equations
