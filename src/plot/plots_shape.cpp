@@ -18,13 +18,14 @@ struct Moment {
 };
 
 Moment largest_moment(const ModeShape& mode) {
+  constexpr double first_of_equals = 1.0 + 1e-7;  // round orbits are as large at any moment
   double largest = 0, theta0 = 0;
   for (std::size_t i = 0; i < mode.s.size(); ++i)
     for (int k = 0; k < 90; ++k) {
       const double theta = two_pi * k / 90;
       const Complex z = std::polar(1.0, theta);
       if (const double r = std::hypot((z * mode.y[i]).real(), (z * mode.z[i]).real());
-          r > largest) {
+          r > first_of_equals * largest) {
         largest = r;
         theta0 = theta;
       }

@@ -77,7 +77,10 @@ void finish(const Range& r, const Axis& a, double pad, Scale& s) {
       lo -= span / 2;
       hi += span / 2;
     }  // constant
-    // Zero stays at the edge when the data end there.
+    // Zero stays at the edge when the data end there, but for rounding.
+    constexpr double rounding = 1e-9;
+    if (std::abs(lo) < rounding * hi) lo = 0.0;
+    if (std::abs(hi) < -rounding * lo) hi = 0.0;
     if (lo != 0.0 || !a.include_zero) lo -= pad * span;
     if (hi != 0.0 || !a.include_zero) hi += pad * span;
   }

@@ -58,11 +58,12 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
   axes.x = plot::Axis("axial position", "m");
   axes.y = plot::Axis(c == 3 ? "twist, largest = 1" : "axial motion, largest = 1", "-");
   axes.y.include_zero = true;
+  constexpr double first_of_equals = 1.0 + 1e-9;
   double largest = 0;
   Complex top = 1;
   for (Index n = 0; n < s.linear.system().nodes(); ++n)
     if (const Complex x = (*d.a)[6 * n + c];
-        !s.linear.system().node(n).scalar && std::abs(x) > largest) {
+        !s.linear.system().node(n).scalar && std::abs(x) > first_of_equals * largest) {
       largest = std::abs(x);
       top = x;
     }

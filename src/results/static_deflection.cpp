@@ -143,7 +143,7 @@ void DeflectedLine::add_stations(io::Table& t) {
     phi_.x.push_back(station.s);
     phi_.y.push_back(turn.phi - phi0);
     whole_ = std::max(whole_, u.norm());
-    if (const double size = size_of(u); size > largest_) {
+    if (const double size = size_of(u); size > largest_ * (1 + 1e-9)) {
       largest_ = size;
       where_ = station.s;
       largest_station_ = &station;

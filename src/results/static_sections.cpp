@@ -56,7 +56,7 @@ SectionExtreme find_extreme(const std::vector<SectionPoint>& points, std::size_t
   for (const SectionPoint& p : points) {
     if (!is_of(p, line) || (stress && !p.has_stress)) continue;
     const double v = of(p);
-    if (!best.any || std::abs(v) > std::abs(best.value) * (1 + 1e-12)) best = {v, p.s, true};
+    if (!best.any || std::abs(v) > std::abs(best.value) * (1 + 1e-9)) best = {v, p.s, true};
   }
   return best;
 }
@@ -102,8 +102,8 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
     const double shown = real ? x.value : 0.0;
     const plot::DisplayUnit unit = plot::unit_for(si, std::abs(shown));
     out.extremes.add({name, label, shown * unit.factor, unit.name, x.s});
-    summary["largest"][name][fmt::format("{} [{}]", label, si)] = x.value;
-    summary["largest"][name][fmt::format("{} at [m]", label)] = x.s;
+    summary["largest"][name][fmt::format("{} [{}]", label, si)] = shown;
+    if (real) summary["largest"][name][fmt::format("{} at [m]", label)] = x.s;
     return x;
   };
   const auto say = [&](const char* what, const char* si, const SectionExtreme& x,

@@ -123,6 +123,8 @@ TorqueWatch::TorqueWatch(const run::Job& job, const model::ShaftTorques& law)
 }
 
 void TorqueWatch::count(Watched& w, const analysis::LoadCycle& c) const {
+  constexpr double rounding = 1e-9;  // of the endurance: no cycle
+  if (!(c.range > rounding * strength_.endurance)) return;
   const double damage = strength_.damage(c);
   const int k = CycleClasses::of(strength_.equivalent(c.amplitude(), c.mean), strength_.endurance);
   w.damage += damage;

@@ -118,16 +118,16 @@ ModeKind kind_by_size(const Linearizer& linear, const WhirlMode& w) {
 
 /// Scale: largest displacement (or twist) real and 1.
 void normalise_shape(const system::System& s, WhirlMode& w) {
+  constexpr double first_of_equals = 1.0 + 1e-9;
   Complex largest = 0;
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
     const auto x = w.x.segment<6>(6 * i);
     if (w.kind == ModeKind::torsional) {
-      if (std::abs(x[3]) > std::abs(largest)) largest = x[3];
+      if (std::abs(x[3]) > first_of_equals * std::abs(largest)) largest = x[3];
     } else {
       for (int c = 0; c < 3; ++c)
-        if (std::abs(x[c]) > std::abs(largest) * (1.0 + 1e-9))
-          largest = x[c];  // the first of equals
+        if (std::abs(x[c]) > first_of_equals * std::abs(largest)) largest = x[c];
     }
   }
   if (std::abs(largest) > 1e-12) w.x /= largest;
@@ -202,6 +202,36 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   normalise_shape(linear.system(), w);
   if (w.kind == ModeKind::lateral && w.frequency != 0.0) find_direction(linear, w);
   return w;
+}
+
+void separate_at_rest(const Linearizer& linear, WhirlMode& first, WhirlMode& second) {
+  const system::System& s = linear.system();
+  Index top = -1;
+  double largest = 0.0;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (s.node(i).scalar) continue;
+    const double size = (local_displacement(linear, first.x, i).tail<2>().cwiseAbs2() +
+                         local_displacement(linear, second.x, i).tail<2>().cwiseAbs2())
+                            .sum();
+    if (size > (1.0 + 1e-9) * largest) {
+      largest = size;
+      top = i;
+    }
+  }
+  if (top < 0) return;
+  Eigen::Matrix2cd u;
+  u.col(0) = local_displacement(linear, first.x, top).tail<2>();
+  u.col(1) = local_displacement(linear, second.x, top).tail<2>();
+  const Complex det = u(0, 0) * u(1, 1) - u(0, 1) * u(1, 0);
+  if (!(std::abs(det) > 1e-3 * u.col(0).norm() * u.col(1).norm())) return;
+  const VecXc y = (u(1, 1) * first.x - u(1, 0) * second.x) / det;
+  const VecXc z = (u(0, 0) * second.x - u(0, 1) * first.x) / det;
+  first.x = y;
+  second.x = z;
+  for (WhirlMode* w : {&first, &second}) {
+    normalise_shape(s, *w);
+    find_direction(linear, *w);
+  }
 }
 
 }  // namespace whirl::analysis

@@ -415,7 +415,21 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
     if (!options_.certify) certificate_.open = "not asked for";
     solve_counted(Omega);
   }
+  if (Omega == 0.0) separate_pairs_at_rest();
   return modes_;
+}
+
+void WhirlSolver::separate_pairs_at_rest() {
+  constexpr double same = 1e-8;
+  for (std::size_t k = 0; k + 1 < modes_.size(); ++k) {
+    WhirlMode &a = modes_[k], &b = modes_[k + 1];
+    const bool lateral = a.kind == ModeKind::lateral && b.kind == ModeKind::lateral;
+    if (!lateral || a.frequency == 0.0 ||
+        !(std::abs(a.lambda - b.lambda) < same * std::abs(a.lambda)))
+      continue;
+    separate_at_rest(linear_, a, b);
+    ++k;
+  }
 }
 
 std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& start) {

@@ -73,6 +73,7 @@ class WhirlSolver {
   /// damping at their mean rate.
   void separate(double Omega, std::vector<la::Mode>& group);
   void solve_counted(double Omega);
+  void separate_pairs_at_rest();
   std::optional<GrowthBound::Quiet> quiet_above(const la::MCK& m, double reached);
   /// Modes with one set of matrices and, where stability is judged, all that grows.
   const std::vector<la::Mode>& judged(const la::MCK& m, double Omega, SpectrumCertificate& known);
