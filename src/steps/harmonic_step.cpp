@@ -175,9 +175,15 @@ class HarmonicRun {
     std::size_t probe, point;
     double at = 0;
     FrequencyPoint peak;
+    bool bounded = true;  ///< something damps it
   };
+  void find_peaks();
   void list_maxima(std::size_t probe, std::vector<Found>& out) const;
   void find_peak(Found& x) const;
+  bool is_bounded(Responder& responder, const Found& x) const;
+  /// Points of the grid on what has no bound.
+  void drop_unbounded();
+  void warn_of_unbounded();
   void put_largest(const std::vector<Found>& peaks);
   /// What the elements leave of the peaks, or of the largest amplitude where there is none.
   std::vector<double> judge_amplitudes(const std::vector<Found>& peaks);
@@ -206,7 +212,8 @@ class HarmonicRun {
   std::vector<std::vector<double>> torques_;  ///< [point][line], N m
   double largest_ = 0, largest_twist_ = 0, largest_at_ = 0;
   bool twists_ = false;  ///< the response is torsional
-  std::vector<Peak> peaks_;
+  std::vector<Found> found_;
+  std::vector<Peak> peaks_;  ///< those with a bound
 };
 
 HarmonicRun::HarmonicRun(run::Job& job, const model::Step& step, const model::HarmonicStep& law)
@@ -303,6 +310,7 @@ void HarmonicRun::solve_grid() {
 }
 
 void HarmonicRun::find_largest() {
+  largest_ = largest_twist_ = 0;
   for (std::size_t k = 0; k < points_.size(); ++k)
     for (std::size_t p = 0; p < options_.probes.size(); ++p) {
       if (lateral(points_[k], p) > largest_) {
@@ -381,27 +389,24 @@ void HarmonicRun::add_peaks() {
                    {"amplitude", twists_ ? "rad" : "m",
                     twists_ ? "0-peak, twist" : "0-peak, major axis of the orbit"},
                    {"mesh error of amplitude", "-", "relative, what the elements leave"}};
-  table.nan_means = "not judged";
+  table.nan_means = "an amplitude without bound, or not judged";
   io::Value& v = s_.summary();
   v["points"] = points_.size();
-  std::vector<Found> found;
-  for (std::size_t p = 0; p < options_.probes.size(); ++p)
-    list_maxima(p, found);
-  run_side_by_side(found.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found[k]); });
-  put_largest(found);
-  const std::vector<double> errors = judge_amplitudes(found);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Found& x = found[k];
+  put_largest(found_);
+  const std::vector<double> errors = judge_amplitudes(found_);
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const Found& x = found_[k];
     const std::string& name = options_.probes[x.probe].name;
-    const double size = size_of(x.peak, x.probe);
+    const double size = x.bounded ? size_of(x.peak, x.probe) : nan;
     table.add({name, to_rpm(x.peak.Omega), to_hz(x.peak.frequency), size, errors[k]});
     io::Value e = io::Value::object();
     e["frequency [Hz]"] = to_hz(x.peak.frequency);
     e["speed [rpm]"] = to_rpm(x.peak.Omega);
     e["amplitude"] = size;
+    e["bounded"] = x.bounded;
     e["mesh error of amplitude"] = errors[k];
     v["peaks"][name].push(std::move(e));
-    peaks_.push_back({x.at, size});
+    if (x.bounded) peaks_.push_back({x.at, size});
   }
   s_.add_table("peaks", std::move(table));
 }
@@ -413,6 +418,7 @@ void HarmonicRun::put_largest(const std::vector<Found>& peaks) {
     most.push_back(largest_of(p));
   double& largest = twists_ ? largest_twist_ : largest_;
   for (const Found& x : peaks) {
+    if (!x.bounded) continue;
     const double size = size_of(x.peak, x.probe);
     most[x.probe] = std::max(most[x.probe], size);
     if (size > largest) {
@@ -452,6 +458,7 @@ std::vector<double> HarmonicRun::judge_amplitudes(const std::vector<Found>& peak
     const BothSpins options = options_on(refined);
     Responder fine(refined.linear(), options);
     for (std::size_t k = 0; k < peaks.size(); ++k) {
+      if (!peaks[k].bounded) continue;
       const std::size_t probe = peaks[k].probe;
       const auto on = [&](Responder& responder) {
         return [&, probe](double x) { return size_of(respond(responder, x), probe); };
@@ -473,9 +480,10 @@ std::vector<double> HarmonicRun::judge_amplitudes(const std::vector<Found>& peak
     if (peaks.empty()) accuracy.add(nan, {});
   }
   for (std::size_t k = 0; k < peaks.size(); ++k)
-    accuracy.add(out[k], fmt::format("the peak of probe '{}' at {:.6g} {}",
-                                     options_.probes[peaks[k].probe].name, displayed(peaks[k].at),
-                                     asynchronous_ ? "Hz" : "rpm"));
+    if (peaks[k].bounded)
+      accuracy.add(out[k], fmt::format("the peak of probe '{}' at {:.6g} {}",
+                                       options_.probes[peaks[k].probe].name, displayed(peaks[k].at),
+                                       asynchronous_ ? "Hz" : "rpm"));
   accuracy.report();
   return out;
 }
@@ -503,6 +511,69 @@ void HarmonicRun::find_peak(Found& x) const {
   x.at = analysis::find_maximum(grid_[k - 1], grid_[k], size_of(points_[k], x.probe), grid_[k + 1],
                                 3e-9, size);
   x.peak = respond(responder, x.at);
+  x.bounded = is_bounded(responder, x);
+}
+
+/// Without damping a response turns about within rounding of its resonance; damped by as little as
+/// 1e-6 of the critical it does not within 1e-7 of the place.
+bool HarmonicRun::is_bounded(Responder& responder, const Found& x) const {
+  constexpr double beside = 1e-7;
+  const FrequencyPoint below = respond(responder, x.at * (1 - beside)),
+                       above = respond(responder, x.at * (1 + beside));
+  VecXc a(2), b(2);
+  if (twists_) {
+    a << below.unknown[x.probe], 0.0;
+    b << above.unknown[x.probe], 0.0;
+  } else {
+    a << below.probe[x.probe].y, below.probe[x.probe].z;
+    b << above.probe[x.probe].y, above.probe[x.probe].z;
+  }
+  return !(a.dot(b).real() < -0.5 * a.norm() * b.norm());
+}
+
+void HarmonicRun::find_peaks() {
+  for (std::size_t p = 0; p < options_.probes.size(); ++p)
+    list_maxima(p, found_);
+  run_side_by_side(found_.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found_[k]); });
+}
+
+void HarmonicRun::drop_unbounded() {
+  constexpr double near = 1e-6;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const bool on_it = std::any_of(found_.begin(), found_.end(), [&](const Found& x) {
+      return !x.bounded && std::abs(grid_[k] - x.at) < near * std::abs(x.at);
+    });
+    if (on_it) continue;
+    if (kept != k) {
+      grid_[kept] = grid_[k];
+      points_[kept] = std::move(points_[k]);
+      torques_[kept] = std::move(torques_[k]);
+    }
+    ++kept;
+  }
+  grid_.resize(kept);
+  points_.resize(kept);
+  torques_.resize(kept);
+}
+
+void HarmonicRun::warn_of_unbounded() {
+  std::vector<double> places;
+  for (const Found& x : found_)
+    if (!x.bounded && std::none_of(places.begin(), places.end(), [&](double p) {
+          return std::abs(p - x.at) < 1e-6 * std::abs(p);
+        }))
+      places.push_back(x.at);
+  if (places.empty()) return;
+  std::string list;
+  for (const double x : places)
+    list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", displayed(x));
+  Diagnostic d;
+  d.code = "W13";
+  d.message = fmt::format("step '{}': the response has no bound at {} {}: nothing damps it there",
+                          s_.step.name, list, asynchronous_ ? "Hz" : "rpm");
+  d.hint = "give bearings or shafts damping; amplitudes beside these places grow without end";
+  results::warn(job_, std::move(d));
 }
 
 void HarmonicRun::add_response_figures(std::size_t probe) {
@@ -606,14 +677,22 @@ void HarmonicRun::finish() {
           ? fmt::format("Steady response at {:.6g} rpm against the excitation frequency.",
                         to_rpm(law_.speed))
           : fmt::format("Steady response with the excitation at {:g} times the speed.", law_.order);
-  s_.finish(fmt::format("{} points, {} at {:.5g} {}", points_.size(), what, displayed(largest_at_),
-                        asynchronous_ ? "Hz" : "rpm"));
+  const auto unbounded =
+      std::find_if(found_.begin(), found_.end(), [](const Found& x) { return !x.bounded; });
+  const bool endless = unbounded != found_.end();
+  s_.finish(
+      fmt::format("{} points, {} at {:.5g} {}", points_.size(), endless ? "without bound" : what,
+                  displayed(endless ? unbounded->at : largest_at_), asynchronous_ ? "Hz" : "rpm"));
 }
 
 void HarmonicRun::execute() {
   refine_grid();
   solve_grid();
   find_largest();
+  find_peaks();
+  drop_unbounded();
+  find_largest();
+  warn_of_unbounded();
   judge_mesh();
   add_table();
   add_peaks();
