@@ -343,22 +343,29 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   io::Table margins;
   margins.title = "Separation margins (API RP 684)";
   margins.nan_means = "no half-power point within the speeds";
-  margins.columns = {
-      {"probe", "-", ""},
-      {"peak", "rpm", ""},
-      {"amplification factor", "-", ""},
-      {"required", "%", "by the largest factor it may have, where that is not known"},
-      {"actual", "%", "negative: inside the operating range"},
-      {"result", "-", ""}};
+  const bool several = r.orders.size() > 1;
+  margins.columns = {{"probe", "-", ""}};
+  if (several) margins.columns.push_back({"order", "-", "of the reference speed: whose unbalance"});
+  for (const io::Column& c : std::initializer_list<io::Table::Column>{
+           {"peak", "rpm", ""},
+           {"amplification factor", "-", ""},
+           {"required", "%", "by the largest factor it may have, where that is not known"},
+           {"actual", "%", "negative: inside the operating range"},
+           {"result", "-", ""}})
+    margins.columns.push_back(c);
   int failed = 0, undetermined = 0;
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     for (const analysis::MarginRow& m :
          analysis::separation_margins(peaks, probes, {law.operating[0], law.operating[1]}, k)) {
-      margins.add({m.probe, to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual,
-                   m.critically_damped ? "critically damped"
-                   : m.undetermined    ? "not determined"
-                   : m.passed          ? "passed"
-                                       : "FAILED"});
+      std::vector<io::Table::Cell> row{m.probe};
+      if (several) row.emplace_back(r.orders[k]);
+      for (const double x : {to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual})
+        row.emplace_back(x);
+      row.emplace_back(std::string(m.critically_damped ? "critically damped"
+                                   : m.undetermined    ? "not determined"
+                                   : m.passed          ? "passed"
+                                                       : "FAILED"));
+      margins.add(std::move(row));
       failed += !m.passed && !m.undetermined;
       undetermined += m.undetermined;
     }
@@ -477,7 +484,8 @@ std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Lar
   std::vector<double> out = operating;
   if (operating.size() > 1) out.push_back(0.5 * (operating[0] + operating[1]));
   if (response.amplitude > 0) out.push_back(response.speed);
-  for (int k = 1; k <= parts; ++k)
+  const bool reversed = speeds.front() < 0;  // then the first is a fast one
+  for (int k = reversed ? 0 : 1; k <= parts; ++k)
     out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
   return out;
 }
@@ -562,9 +570,12 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   io::Table found =
       peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, largest));
-  results::warn_of_tables(job, step.name, o.speeds.front(), o.speeds.back());
+  results::warn_of_tables(job, step.name, o.speeds);
   if (operating.empty() && law.operating[1] > 0)
     operating.assign(law.operating.begin(), law.operating.end());
+  if (o.speeds.back() <= 0)
+    for (double& x : operating)
+      x = -std::abs(x);
   results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor, operating));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",

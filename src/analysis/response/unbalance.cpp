@@ -81,14 +81,15 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
   for (std::size_t k = 0; k < orders.size(); ++k) {
     const double w = orders[k] * std::abs(Omega);
     VecXc a;
-    if (w == 0.0) {
-      a = VecXc::Zero(linear_.system().size());  // nothing turns
-      linear_.at(Omega);
+    linear_.move_to(Omega);
+    // at rest what turns with the rotor is the slow roll of a bow or of a load on it
+    const bool still = w == 0.0 && linear_.forcing()[k].isZero(0.0);
+    if (still || (w == 0.0 && periodic_)) {
+      a = VecXc::Zero(linear_.system().size());
       if (periodic_) stand_still(p);
     } else if (periodic_) {
       a = breathe(Omega, p);
     } else if (axes_) {
-      linear_.move_to(Omega);
       a = axes_->response(Omega, -linear_.forcing()[k]);
       if (Omega < 0) a = a.conjugate().eval();
       linear_.system().complete(linear_.equilibrium().state, a);
