@@ -52,6 +52,21 @@ const system::Energy& Snapshot::energy() const {
   return stored_;
 }
 
+double Snapshot::vibration_energy() const {
+  WHIRL_EXPECTS(q_ != nullptr);
+  const double kinetic = energy().kinetic;
+  VecX turning = VecX::Zero(v_->size());
+  for (Index i = 0; i < system().nodes(); ++i) {
+    const Index spin = 6 * i + system::spin_phi;
+    if (!system().node(i).scalar) turning[spin] = (*v_)[spin];
+  }
+  system::Workspace& w = problem_.workspace();
+  system().evaluate_nodes(w, problem_.frames, t_, *q_, turning, *a_);
+  const double spinning = system().energy(w).kinetic;
+  system().evaluate_nodes(w, problem_.frames, t_, *q_, *v_, *a_);
+  return std::max(0.0, kinetic - spinning);
+}
+
 double Snapshot::dissipation() const {
   WHIRL_EXPECTS(q_ != nullptr);
   return have_energy_ ? power_.dissipated : system().exchange(problem_.workspace()).dissipated;

@@ -38,6 +38,8 @@ class Snapshot {
   time::Problem::Power power() const;
   /// Power supplied and dissipated alone: cheaper where the stored energy is not asked for.
   time::Problem::Power exchange() const;
+  /// Kinetic energy that the rotor would not have if every node but turned about its axis, J.
+  double vibration_energy() const;
   /// Power dissipated, W: cheaper still.
   double dissipation() const;
   /// phi with its whole turns, rad.

@@ -321,6 +321,7 @@ void EnergyBalance::begin(const Snapshot& s) {
   const auto p = s.power();
   e0_ = e1_ = p.stored;
   kinetic0_ = p.kinetic;
+  exchanged_ = s.vibration_energy();  // a steady whirl exchanges nothing
   largest_kinetic_ = p.kinetic;
   largest_potential_ = std::abs(p.stored - p.kinetic);
 }

@@ -182,8 +182,8 @@ class EnergyBalance final : public Observer {
   double dissipated() const { return dissipated_; }
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
-  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and
-  /// how far the kinetic, the potential and the stored energy departed from their starts. What a
+  /// Energy that changed its place, J: the largest of the vibration's at the start, of what was
+  /// supplied, what was dissipated, and how far the kinetic, the potential and the stored energy departed from their starts. What a
   /// defect is measured by: in a conservative motion nothing but the exchange between kinetic and
   /// potential energy. The defect itself is no part of it.
   double exchanged() const { return exchanged_; }
