@@ -1,4 +1,5 @@
 #include <results/linear_limits.hpp>
+#include <core/contract.hpp>
 #include <results/clearances.hpp>
 #include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
@@ -438,6 +439,30 @@ void warn_of_tables(run::Job& job, const std::string& step, double low, double h
     const double ratio = job.model.shafts[job.model.bearings[i].at.shaft].speed_ratio;
     const auto [least, most] = std::minmax({ratio * low, ratio * high});
     used.push_back({i, least, most});
+  }
+  warn_of_coarse_tables(job, step, used);
+}
+
+void warn_of_tables(run::Job& job, const std::string& step, std::span<const double> speeds) {
+  WHIRL_EXPECTS(!speeds.empty());
+  warn_of_held_tables(job, step, speeds.front(), speeds.back());
+  std::vector<UsedTable> used;
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const model::Bearing& b = job.model.bearings[i];
+    const double ratio = job.model.shafts[b.at.shaft].speed_ratio;
+    const auto [least, most] = std::minmax({ratio * speeds.front(), ratio * speeds.back()});
+    used.push_back({i, least, most});
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    if (!table) continue;
+    const auto row_at = [&](double speed) {
+      return std::find_if(table->speed.begin(), table->speed.end(), [&](double row) {
+        return std::abs(row - ratio * speed) <= 1e-12 * std::abs(row);
+      });
+    };
+    const auto first = row_at(speeds.front());
+    if (std::all_of(speeds.begin(), speeds.end(),
+                    [&](double speed) { return row_at(speed) != table->speed.end(); }))
+      used.back().low = used.back().high = *first;
   }
   warn_of_coarse_tables(job, step, used);
 }

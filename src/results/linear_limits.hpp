@@ -73,6 +73,8 @@ TablesBegin where_tables_begin(const run::Job& job);
 /// Bearings whose table ends within low .. high (reference speed, rad/s) and whose edge coefficients
 /// are held beyond (W12), and whose rows there are too far apart (W16).
 void warn_of_tables(run::Job& job, const std::string& step, double low, double high);
+/// The same of single speeds, ascending: where all of them are rows of a table nothing lies between.
+void warn_of_tables(run::Job& job, const std::string& step, std::span<const double> speeds);
 /// A bearing of the model, perhaps with a table, and the speeds of its shaft, rad/s.
 struct UsedTable {
   std::size_t bearing = 0;

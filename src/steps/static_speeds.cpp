@@ -417,7 +417,7 @@ void SpeedSweep::execute() {
     take(speeds_[k]);
   }
   if (found_ == 0) throw *first_error_;
-  results::warn_of_tables(job_, step_.name, speeds_.front(), speeds_.back());
+  results::warn_of_tables(job_, step_.name, speeds_);
   results::warn_of_mean_crack(job_, step_.name, true);
   report_mesh();
   show_equilibria();
