@@ -144,7 +144,8 @@ void describe_torque(Visitor& v, model::Drive& d) {
         w.quantity("quadratic", t.quadratic, "N.m.s^2/rad^2", not_negative,
                    "times the spin squared (fan, windage)");
       },
-      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|)");
+      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|), the sign "
+      "smoothed below 0.5 rpm");
   const bool motor = describe_motors(v, t);
   const bool governor = v.table(
       optional("governor", "none"),
