@@ -346,7 +346,7 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   const bool several = r.orders.size() > 1;
   margins.columns = {{"probe", "-", ""}};
   if (several) margins.columns.push_back({"order", "-", "of the reference speed: whose unbalance"});
-  for (const io::Column& c : std::initializer_list<io::Table::Column>{
+  for (const io::Table::Column& c : std::initializer_list<io::Table::Column>{
            {"peak", "rpm", ""},
            {"amplification factor", "-", ""},
            {"required", "%", "by the largest factor it may have, where that is not known"},

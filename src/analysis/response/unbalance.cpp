@@ -96,6 +96,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     } else if (solver_.prepare(Omega, w)) {
       a = force_of(k, Omega);
       solver_.solve(a);
+      if (w == 0.0 && solver_.bounded().size() > 0) a = solver_.bounded();
     } else {
       a = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
     }
