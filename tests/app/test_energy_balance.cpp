@@ -323,3 +323,24 @@ TEST(EnergyBalance, LongStepsAreAnAlarm) {
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("do not trust the amplitudes")) << d.log;
 }
+
+// A rotor that starts on its orbit and stays there exchanges nothing; its amplitude is right to 1e-8.
+TEST(EnergyBalance, ASteadyOrbitIsNoAlarm) {
+  for (const char* stiffness : {"1e8", "1e9"}) {
+    std::string bearings;
+    for (const char* at : {"start", "end"})
+      bearings += std::string("[[bearing]]\nat = \"r:") + at + "\"\ntype = \"linear\"\nkyy = \"" +
+                  stiffness + " N/m\"\nkzz = \"" + stiffness + " N/m\"\nkxx = \"" + stiffness +
+                  " N/m\"\n";
+    const DeckRun d(
+        "format = 1\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = \"r\"\nmaterial = "
+        "\"steel\"\n"
+        "columns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 1000, 40]]\n" +
+        bearings +
+        "[[unbalance]]\nat = \"a:mid\"\namount = \"500 g.mm\"\n[[drive]]\nat = \"r:start\"\ntype = "
+        "\"speed\"\nspeed = \"2000 rpm\"\n[[step]]\nname = \"t\"\ntype = \"transient\"\nstart = "
+        "\"unbalance_response\"\nduration = \"0.1 s\"\nintegrator = { tolerance = 1e-4 }\n");
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_FALSE(d.says("energy balance")) << d.log;
+  }
+}

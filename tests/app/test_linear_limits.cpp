@@ -297,6 +297,10 @@ TEST(LinearLimits, RowsOfATableThatAreFarApartAreNamed) {
     EXPECT_FALSE(look(41, step)) << step;
   }
   EXPECT_FALSE(look(7, at_a_row));
+  // single speeds on rows have nothing between them
+  const std::string many = "[[step]]\nname = \"s\"\ntype = \"static\"\nspeeds = { values = ";
+  EXPECT_FALSE(look(5, many + "[\"1000 rpm\", \"2000 rpm\", \"3000 rpm\"] }\n"));
+  EXPECT_TRUE(look(5, many + "[\"1000 rpm\", \"1900 rpm\", \"3000 rpm\"] }\n"));
 }
 
 // The estimate is no less than the error between the rows, and not much more.

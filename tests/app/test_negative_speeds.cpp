@@ -112,3 +112,18 @@ TEST(NegativeSpeeds, PeaksMarginsAndZones) {
   }
   EXPECT_GT(column(back.csv("u_peaks.csv"), "amplification factor [-]").front(), 2.5);
 }
+
+// Material damping makes it whirl beyond its onset, whichever way it turns; the fastest speed of a range
+// below zero is its first.
+TEST(NegativeSpeeds, GrowthIsLookedForAtTheFastestSpeed) {
+  const auto damped = [](const std::string& speeds) {
+    std::string text = rotor("[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { " +
+                             speeds + ", points = 12 }\n");
+    const std::string material = "material = \"steel\"\n";
+    return text.insert(text.find(material) + material.size(), "damping = { internal_beta = \"2e-3 s\" }\n");
+  };
+  const DeckRun forth(damped("start = \"100 rpm\", stop = \"20000 rpm\"")),
+      back(damped("start = \"-20000 rpm\", stop = \"-100 rpm\""));
+  EXPECT_TRUE(forth.says("the rotor is unstable at 20000 rpm")) << forth.log;
+  EXPECT_TRUE(back.says("the rotor is unstable at -20000 rpm")) << back.log;
+}

@@ -146,3 +146,69 @@ TEST(UnboundedResponse, SpeedsWithoutAMotionLeaveTheOthersTheirRows) {
     EXPECT_TRUE(there) << asked << run.log;
   }
 }
+
+// The same under forces of a shaker: two wheels on a spring, twisted at the frequency that they have.
+TEST(UnboundedResponse, OfUndampedShakenRotorsIsSaid) {
+  const std::string text =
+      "format = 1\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = \"t\"\nmaterial = \"steel\"\n"
+      "columns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 1000, 50]]\n"
+      "[[disk]]\nname = \"f\"\nat = \"t:start\"\nmass = \"20 kg\"\nIp = \"0.5 kg.m^2\"\nId = \"0.3 "
+      "kg.m^2\"\n[[disk]]\nname = \"g\"\nat = \"t:end\"\nmass = \"20 kg\"\nIp = \"0.5 kg.m^2\"\nId "
+      "= "
+      "\"0.3 kg.m^2\"\n[[bearing]]\nat = \"t:start\"\ntype = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = "
+      "\"1e8 N/m\"\nkzz = \"1e8 N/m\"\n[[bearing]]\nat = \"t:end\"\ntype = \"linear\"\nkyy = \"1e8 "
+      "N/m\"\nkzz = \"1e8 N/m\"\n[[probe]]\nname = \"f\"\nat = \"f\"\n[[step]]\nname = \"h\"\ntype "
+      "= "
+      "\"harmonic_response\"\nrotor_speed = \"3000 rpm\"\nfrequency = { start = \"10 Hz\", stop = "
+      "\"200 Hz\", points = 50 }\n[[step.force]]\nat = \"f\"\n";
+  for (const char* force :
+       {"moment = [\"1 N.m\", \"0 N.m\", \"0 N.m\"]\n", "force = [\"0 N\", \"1 N\", \"0 N\"]\n"}) {
+    const DeckRun run(text + force);
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_TRUE(run.says("warning[W13]: step 'h': the response has no bound at")) << run.log;
+    EXPECT_TRUE(run.says("without bound at")) << run.log;
+    const Columns peaks = run.csv("h_peaks.csv");
+    ASSERT_GE(peaks.rows.size(), 1u);
+    for (const double amplitude :
+         column(peaks, "amplitude [" + std::string(force[0] == 'm' ? "rad" : "m") + "]"))
+      EXPECT_TRUE(std::isnan(amplitude)) << run.log;
+    // GJ/L (1/I1 + 1/I2) with the shaft's own inertia left out of the closed form
+    if (force[0] == 'm') {
+      EXPECT_NEAR(column(peaks, "frequency [Hz]")[0], 70.8, 0.1);
+    }
+  }
+}
+
+// A shaft that is not straight moves its stations as soon as it turns at all: as much at 0 rpm as at 1.
+TEST(UnboundedResponse, SlowRollBeginsAtRest) {
+  const auto deck = [](const char* start) {
+    return std::string(
+               "format = 1\n[model]\ngravity = \"0 m/s^2\"\n[[shaft]]\nname = \"r\"\nmaterial = "
+               "\"steel\"\nbow = { amount = \"30 um\" }\ncolumns = [\"name\", \"length[mm]\", "
+               "\"od[mm]\"]\nrows = [[\"a\", 250, 50], [\"b\", 500, 50], [\"c\", 250, 50]]\n"
+               "[[disk]]\nname = \"w\"\nat = \"c:end\"\nmass = \"20 kg\"\nIp = \"0.2 kg.m^2\"\nId "
+               "= "
+               "\"0.12 kg.m^2\"\n[[bearing]]\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"2e6 "
+               "N/m\"\nkzz "
+               "= \"2e6 N/m\"\ncyy = \"3e3 N.s/m\"\nczz = \"3e3 N.s/m\"\n[[bearing]]\nat = "
+               "\"b:end\"\n"
+               "type = \"linear\"\nkyy = \"2e6 N/m\"\nkzz = \"2e6 N/m\"\ncyy = \"3e3 N.s/m\"\nczz "
+               "= "
+               "\"3e3 N.s/m\"\n[[probe]]\nname = \"p\"\nat = \"a:start\"\n[[step]]\nname = "
+               "\"u\"\ntype "
+               "= \"unbalance_response\"\nspeed = { start = \"") +
+           start + "\", stop = \"2000 rpm\", points = 40 }\n";
+  };
+  const DeckRun rest(deck("0 rpm")), slow(deck("1 rpm"));
+  ASSERT_EQ(rest.exit, 0) << rest.log;
+  ASSERT_EQ(slow.exit, 0) << slow.log;
+  const Columns response = rest.csv("u_response.csv");
+  // 30 um (sin(pi x/L) - sin(pi/4)) at x = 0
+  EXPECT_NEAR(column(response, "p major [m]")[0], 30e-6 * std::sqrt(0.5), 1e-10);
+  for (const auto& row : response.rows)
+    for (const double x : row)
+      EXPECT_TRUE(std::isfinite(x));
+  const Columns peaks = rest.csv("u_peaks.csv"), expected = slow.csv("u_peaks.csv");
+  ASSERT_EQ(peaks.rows.size(), expected.rows.size());
+  EXPECT_NEAR(column(peaks, "speed [rpm]")[0], column(expected, "speed [rpm]")[0], 1e-3);
+}
