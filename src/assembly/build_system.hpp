@@ -100,6 +100,13 @@ struct FloatingRingBearing {
   std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
 };
 
+/// The oil of a film that conserves mass, where the step follows it.
+struct CarriedOil {
+  std::vector<Index> unknowns;  ///< scalar nodes, one a cell
+  /// What they are with the oil in balance and the journal where it is, m.
+  std::function<std::vector<double>(const NodeAt&)> balanced;
+};
+
 /// What the controller of a magnetic bearing does.
 struct MagneticControl {
   /// The loop of one axis, opened behind its sensor.
@@ -193,6 +200,7 @@ struct Built {
   std::vector<TiltingPads> tilting_pads;
   std::vector<FilmBearing> films;
   std::vector<FloatingRingBearing> floating_rings;
+  std::vector<CarriedOil> carried_oil;
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<TurnCount> turn_counts;

@@ -47,6 +47,8 @@ void add_foundations(Assembly& a);
 void add_loads(Assembly& a);
 /// What turning of the base adds to every inertia there is by now.
 void add_turning_base(Assembly& a);
+/// The step follows what films that conserve mass hold.
+bool follows_oil(const model::Model& m, const model::Step& step);
 /// Unrestrained motion: left out where nothing excites it, else an error.
 void check_restraint(Assembly& a);
 

@@ -403,9 +403,9 @@ std::string system_key(const model::Model& m, const model::Step& step) {
   const bool drawn =
       is_about_the_drawing(step) &&
       std::any_of(m.shafts.begin(), m.shafts.end(), [](const auto& s) { return !s.path.empty(); });
-  return fmt::format("{}{}{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
+  return fmt::format("{}{}{}{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
                      in_time && set_moving ? "; set moving" : "", held_along ? "; held along" : "",
-                     drawn ? "; as drawn" : "");
+                     drawn ? "; as drawn" : "", follows_oil(m, step) ? "; oil followed" : "");
 }
 
 void check_restraint(Assembly& a) {

@@ -129,6 +129,11 @@ using HeatPadsAt = std::function<std::vector<elements::HeatPad>(const NodeAt&)>;
 std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const model::FilmFlow& flow,
                                 const model::Oil& oil, std::size_t pads, const HeatPadsAt& pads_at);
 
+/// The cells of a film that conserves mass, where the step follows its oil; false: it does not, and
+/// the film is that of the momentary state. Decks with such a step have the cells' nodes in all steps.
+bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                      const elements::FiniteJournal& film);
+
 // One a law: how it comes into the system. Rigid supports: supports.cpp.
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::LinearBearing&);  // supports.cpp

@@ -23,16 +23,14 @@ void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance
 
 namespace {
 
-/// Films: clearance, and the load they carry near it at the present spin in the direction of the
+/// Of films: clearance, and the load they carry near it at the present spin in the direction of the
 /// displacement.
 template <class Film>
-void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film,
-              double clearance) {
+void add_film_condition(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                        const elements::FilmLaw<Film>& law, double clearance) {
+  const Film& film = law.film;
   const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius *
                             (film.radius / clearance) * (film.radius / clearance);
-  using Law = elements::FilmLaw<Film>;
-  const Law law{film};
-  add_lateral(a, b, n, law, "journal bearings");
   follow_closely(a, n, clearance);
   const Pair nodes{n.shaft.node, n.other.node};
   a.built.conditions.push_back(
@@ -60,6 +58,14 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
          return s;
        },
        sommerfeld});
+}
+
+template <class Film>
+void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film,
+              double clearance) {
+  const elements::FilmLaw<Film> law{film};
+  add_lateral(a, b, n, law, "journal bearings");
+  add_film_condition(a, b, n, law, clearance);
 }
 
 std::vector<elements::JournalPad> pads_of(const model::FiniteJournal& law) {
@@ -164,7 +170,10 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       return out;
     };
     film->kept_from = add_film_bearing(a, b, law.flow, law.oil, film->surface->arcs().size(), pads);
-    add_film(a, b, n, *film, law.clearance);
+    if (film->mass_conserving && add_carried_film(a, b, n, *film))
+      add_film_condition(a, b, n, elements::FilmLaw<elements::FiniteJournal>{*film}, law.clearance);
+    else
+      add_film(a, b, n, *film, law.clearance);
   });
 }
 

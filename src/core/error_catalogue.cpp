@@ -252,11 +252,13 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[[output.vtk]]\nframes = 100\ncontent = [\"line\", \"surface\", \"bearings\"]"},
       {"E47", "a film that conserves mass where it cannot",
        "cavitation = \"mass_conserving\" follows the oil that a ruptured film carries on to the "
-       "next one. Equilibria and small motions about them know it; in a motion in time the content "
-       "of ruptured film depends on where the journal has been, which no unknown of the model "
-       "follows. The housing and its grooves must stand still.",
-       "[[bearing]]\ntype = \"journal\"\ncavitation = \"reynolds\"    # or, in the step: linear = "
-       "true"},
+       "next one. Of bearings of type \"journal\" equilibria, small motions and transients know "
+       "it; "
+       "of tilting pads a nonlinear transient does not, where the content of ruptured film depends "
+       "on where pad and journal have been. The housing and its grooves must stand still.",
+       "[[bearing]]\ntype = \"tilting_pad\"\ncavitation = \"reynolds\"    # or, in the step: "
+       "linear "
+       "= true"},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "
        "carries the motion that the message names. Hold it, or give "

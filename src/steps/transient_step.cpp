@@ -101,6 +101,24 @@ void settle_start(run::Job& job, run::StepState& start, const model::TransientSt
     job.settle(start, {}, true);
 }
 
+/// Oil that no motion has moved yet (zeros, from an equilibrium or from rest) is in balance with the
+/// journals where they are.
+void fill_films(const run::Job& job, run::StepState& start) {
+  if (job.built.carried_oil.empty()) return;
+  system::State& s = start.state;
+  system::Workspace w = job.system().make_workspace();
+  if (!job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a)) return;
+  const auto node = [&w](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
+  for (const assembly::CarriedOil& oil : job.built.carried_oil) {
+    if (std::any_of(oil.unknowns.begin(), oil.unknowns.end(),
+                    [&s](Index n) { return s.q[6 * n] != 0.0; }))
+      continue;
+    const std::vector<double> content = oil.balanced(node);
+    for (std::size_t k = 0; k < content.size(); ++k)
+      s.q[6 * oil.unknowns[k]] = content[k];
+  }
+}
+
 }  // namespace
 
 run::StepState transient_start(run::Job& job, const model::Step& step,
@@ -111,7 +129,10 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
                                    : job.start_of(step, speed);
   const Beginning beginning = beginning_of(job, step, law);
   begin_drives(job, start, beginning);
-  if (other_run) return start;
+  if (other_run) {
+    fill_films(job, start);
+    return start;
+  }
   using Start = model::TransientStep::Start;
   const bool steady_motion = beginning == Beginning::settled &&
                              (law.start == Start::unbalance_response || law.start == Start::mode);
@@ -120,6 +141,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
     start.drives.clear();  // the equilibrium has angles of its own
     begin_drives(job, start, beginning);
   }
+  fill_films(job, start);
   if (!steady_motion) run::warn_of_closed_contacts(job, step, "the start", start.state);
   return start;
 }

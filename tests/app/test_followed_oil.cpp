@@ -1,0 +1,126 @@
+// Transients of rotors on journal films that conserve mass, through the program: where they begin, where
+// they settle, that steps of other kinds go on from them.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace followed_oil_tests {
+
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+constexpr double clearance = 80e-6;
+
+/// A disk between two split bearings at 3000 rpm. more: keys of the bearings.
+std::string rotor(const std::string& steps, const std::string& more = {}) {
+  const auto bearing = [&](const char* name, const char* at) {
+    return fmt::format(R"([[bearing]]
+name = "{}"
+at = "{}"
+type = "journal"
+diameter = "80 mm"
+length = "40 mm"
+clearance = "80 um"
+viscosity = "20 mPa.s"
+shape = "two_grooves"
+cavitation = "mass_conserving"
+{}
+)",
+                       name, at, more);
+  };
+  return R"(format = 1
+[model]
+gravity = "9.81 m/s^2"
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["left", 300, 80, 1], ["right", 300, 80, 1]]
+[[disk]]
+name = "disk"
+at = "left:end"
+od = "400 mm"
+id = "80 mm"
+width = "150 mm"
+material = "steel"
+[[bearing]]
+name = "thrust"
+at = "left:mid"
+type = "linear"
+kxx = "1e7 N/m"
+cxx = "1e4 N.s/m"
+[[probe]]
+name = "DE"
+at = "left:start"
+[[drive]]
+at = "left:start"
+type = "speed"
+speed = "3000 rpm"
+[output]
+report = false
+every = "1 ms"
+quantities = ["speed", "probes", "energy"]
+)" + bearing("DE", "left:start") +
+         bearing("NDE", "right:end") + steps;
+}
+const std::string at_rest = "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n";
+std::string moves(const char* start, const char* duration) {
+  return fmt::format("[[step]]\nname = \"t\"\ntype = \"transient\"\n{}\nduration = \"{}\"\n", start,
+                     duration);
+}
+
+struct Ends {
+  double y0, z0, y1, z1;  ///< of the journal, m
+};
+Ends ends_of(const DeckRun& d) {
+  EXPECT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  const std::size_t y = t.column("DE.y [m]"), z = t.column("DE.z [m]");
+  return {t.rows.front()[y], t.rows.front()[z], t.rows.back()[y], t.rows.back()[z]};
+}
+double between(double y, double z, double y1, double z1) {
+  return std::hypot(y - y1, z - z1) / clearance;
+}
+
+// Begun in its own equilibrium the journal stays; let go in that of the momentary film, or in the middle
+// of the bearing, it comes there, and the two equilibria differ by the grid.
+TEST(FollowedOil, SettlesInTheEquilibrium) {
+  for (const char* more : {"", "supply_pressure = \"2 bar\""}) {
+    const Ends stays = ends_of(DeckRun(rotor(moves("start = \"static\"", "0.2 s"), more)));
+    EXPECT_LT(between(stays.y0, stays.z0, stays.y1, stays.z1), 1e-7);
+    const Ends comes = ends_of(DeckRun(rotor(at_rest + moves("from = \"st\"", "0.3 s"), more)));
+    EXPECT_GT(between(comes.y0, comes.z0, stays.y0, stays.z0), 1e-5);
+    EXPECT_LT(between(comes.y0, comes.z0, stays.y0, stays.z0), 0.01);
+    EXPECT_LT(between(comes.y1, comes.z1, stays.y0, stays.z0), 1e-4);
+  }
+  const DeckRun fallen(rotor(moves("start = \"rest\"", "0.4 s")));
+  const Ends falls = ends_of(fallen),
+             stays = ends_of(DeckRun(rotor(moves("start = \"static\"", "1 ms"))));
+  EXPECT_EQ(falls.y0, 0.0);
+  EXPECT_LT(between(falls.y1, falls.z1, stays.y0, stays.z0), 1e-3);
+  const whirl::io::Value energy = fallen.summary("t").at("energy");
+  EXPECT_LT(std::abs(energy.at("largest defect [J]").number()),
+            1e-6 * energy.at("supplied [J]").number());
+}
+
+// What such a transient leaves other steps take up, and the other way round: all have the oil's nodes.
+TEST(FollowedOil, StepsGoOn) {
+  const DeckRun d(rotor(
+      moves("start = \"static\"", "5 ms") +
+      "[[step]]\nname = \"st\"\ntype = \"static\"\nfrom = \"t\"\nspeed = \"3000 rpm\"\n"
+      "[[step]]\nname = \"m\"\ntype = \"modal\"\nfrom = \"st\"\nspeed = \"3000 rpm\"\nmodes = 2\n"
+      "[[step]]\nname = \"on\"\ntype = \"transient\"\nfrom = \"t\"\nduration = \"5 ms\"\n"));
+  EXPECT_EQ(d.exit, 0) << d.log;
+  const DeckRun alone(
+      rotor("[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"3000 rpm\"\nmodes = 2\n"));
+  EXPECT_EQ(alone.exit, 0) << alone.log;
+  const Columns with = d.csv("m_modes.csv"), without = alone.csv("m_modes.csv");
+  const std::size_t f = with.column("frequency [Hz]");
+  ASSERT_EQ(with.rows.size(), without.rows.size());
+  for (std::size_t k = 0; k < with.rows.size(); ++k)
+    EXPECT_NEAR(with.rows[k][f], without.rows[k][f], 1e-6 * without.rows[k][f]);
+}
+
+}  // namespace followed_oil_tests
