@@ -112,8 +112,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
       v_(system.size()),
       a_(VecX::Zero(system.size())),
       r_(system.size()),
-      part_(system.make_matrices()),
-      sample_(system.make_matrices()) {
+      part_(system.make_matrices()) {
   WHIRL_EXPECTS(std::all_of(running_.table_frequencies.begin(), running_.table_frequencies.end(),
                             [](double w) { return std::isfinite(w); }));
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
@@ -329,6 +328,8 @@ void SteadySystem::sort_terms() {
     turning_.clear();
     turning_smooth_.clear();
   }
+  of_turning_smooth_ = system_.blocks_of(turning_smooth_);
+  of_turning_ = system_.blocks_of(turning_);
   set_apart_frequency_terms();
 }
 
@@ -404,6 +405,18 @@ bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const
   return system_.tangent(workspace_, f, running_.time, q_, v_, a_, out, &only);
 }
 
+bool SteadySystem::evaluate_blocks(const system::Frames& f, double Omega, const VecX& q,
+                                   double theta, const Terms& only,
+                                   const system::System::Blocks& where) {
+  throw_if_interrupted();
+  set_rates(Omega, v_);
+  q_ = q;
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)]) q_[6 * i + 3] += theta * ratio_[at(system_.node(i).line)];
+  if (sample_.M.value_count() == 0) sample_ = system_.make_matrices();
+  return system_.tangent_blocks(workspace_, f, running_.time, q_, v_, a_, sample_, only, where);
+}
+
 bool SteadySystem::visit_revolution(
     const system::Frames& f, double Omega, const VecX& q,
     const std::function<void(double, const system::Workspace&)>& visit) {
@@ -442,10 +455,6 @@ bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const 
 
 namespace {
 
-Eigen::Map<VecX> values_of(la::BlockMatrix<6>& m) {
-  return {m.data(), static_cast<Index>(m.value_count())};
-}
-
 /// Adds what is left of samples of this size in the mean. What is rounding of theirs is nothing: a
 /// line that turns freely would be held by it, or thrown off.
 void add_mean(const Eigen::Ref<const VecX>& mean, const Eigen::Ref<const VecX>& size,
@@ -473,28 +482,34 @@ bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, cons
 }
 
 bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const VecX& q,
-                                    const Terms& only, la::MCK& out) {
+                                    const Terms& only, const system::System::Blocks& where,
+                                    la::MCK& out) {
   WHIRL_EXPECTS(weights_.cols() == static_cast<Index>(theta_.size()));
   if (only.empty()) return true;
-  if (mean_.M.value_count() == 0) {
-    mean_ = system_.make_matrices();
-    size_ = system_.make_matrices();
-  }
   constexpr std::array parts{&la::MCK::M, &la::MCK::C, &la::MCK::K};
-  for (const auto part : parts) {
-    values_of(mean_.*part).setZero();
-    values_of(size_.*part).setZero();
-  }
+  constexpr Index block = 36;
+  const Index values = 3 * block * static_cast<Index>(where.slots.size());
+  mean_.setZero(values);
+  size_.setZero(values);
   for (std::size_t k = 0; k < theta_.size(); ++k) {
-    if (!evaluate_tangent(f, Omega, q, theta_[k], sample_, only)) return false;
+    if (!evaluate_blocks(f, Omega, q, theta_[k], only, where)) return false;
     const double w = weights_(0, static_cast<Index>(k));
-    for (const auto part : parts) {
-      values_of(mean_.*part) += w * values_of(sample_.*part);
-      values_of(size_.*part) += std::abs(w) * values_of(sample_.*part).cwiseAbs();
-    }
+    Index first = 0;
+    for (const auto part : parts)
+      for (const Index s : where.slots) {
+        const Eigen::Map<const Vector<block>> sample((sample_.*part).block(s).data());
+        mean_.segment<block>(first) += w * sample;
+        size_.segment<block>(first) += std::abs(w) * sample.cwiseAbs();
+        first += block;
+      }
   }
+  Index first = 0;
   for (const auto part : parts)
-    add_mean(values_of(mean_.*part), values_of(size_.*part), values_of(out.*part));
+    for (const Index s : where.slots) {
+      add_mean(mean_.segment<block>(first), size_.segment<block>(first),
+               Eigen::Map<Vector<block>>((out.*part).block(s).data()));
+      first += block;
+    }
   return true;
 }
 
@@ -521,7 +536,7 @@ bool SteadySystem::smooth_residual(const system::Frames& f, double Omega, const 
 bool SteadySystem::smooth_tangent(const system::Frames& f, double Omega, const VecX& q,
                                   la::MCK& out) {
   return evaluate_tangent(f, Omega, q, 0.0, out, smooth_) &&
-         add_mean_tangent(f, Omega, q, turning_smooth_, out);
+         add_mean_tangent(f, Omega, q, turning_smooth_, of_turning_smooth_, out);
 }
 
 bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
@@ -631,7 +646,7 @@ bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const Ve
     if (!evaluate_tangent(f, Omega, q, 0.0, part_, steady_)) return false;
     add_scaled(out, 1.0, part_);
   }
-  return add_mean_tangent(f, Omega, q, turning_, out);
+  return add_mean_tangent(f, Omega, q, turning_, of_turning_, out);
 }
 
 bool SteadySystem::forcing(const system::Frames& f, double Omega, const VecX& q,

@@ -120,10 +120,13 @@ class SteadySystem {
                          VecX& r, const Terms& only);
   bool evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta,
                         la::MCK& out, const Terms& only);
+  /// These blocks of the tangent at an angle, into sample_.
+  bool evaluate_blocks(const system::Frames& f, double Omega, const VecX& q, double theta,
+                       const Terms& only, const system::System::Blocks& where);
   bool add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
                          VecX& r);
   bool add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
-                        la::MCK& out);
+                        const system::System::Blocks& where, la::MCK& out);
   bool add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
                    std::vector<VecXc>& out);
   bool smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
@@ -152,6 +155,7 @@ class SteadySystem {
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;
+  system::System::Blocks of_turning_smooth_, of_turning_;  ///< where their tangents stand
   Terms by_frequency_, steady_;        ///< of other_: those that answer differently to motions of
                                        ///< different frequency; the rest
   bool turning_by_frequency_ = false;  ///< some of turning_ do too
@@ -161,8 +165,9 @@ class SteadySystem {
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;  // scratch
   la::MCK part_, sample_;
-  la::MCK mean_, size_;  // of means: the sum over the samples, and of what they are without signs
-  VecX mean_r_, size_r_;
+  // Of means: the sum over the samples, and of what they are without signs; of tangents M, C, K one
+  // after another, block after block
+  VecX mean_, size_, mean_r_, size_r_;
   // What does not depend on the frequency asked about, kept while the state stays: supports
   // tabulated against it alone are evaluated again
   la::MCK fixed_;

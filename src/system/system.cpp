@@ -6,6 +6,7 @@
 #include <system/node_lanes.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <cmath>
 #include <cstddef>
 
@@ -183,6 +184,9 @@ System Builder::finalize() {
   for (std::size_t i = 0; i < s.terms_.size(); ++i)
     if (s.terms_[i]->cornered()) s.cornered_.push_back(i);
   s.list_exchanging();
+  s.all_terms_.resize(s.terms_.size());
+  std::iota(s.all_terms_.begin(), s.all_terms_.end(), std::size_t{0});
+  s.everywhere_ = s.every_block();
   return std::move(system_);
 }
 
@@ -416,9 +420,9 @@ void System::evaluate_own_axes(Workspace& w) const {
 }
 
 void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                                Eigen::Ref<const VecX> a) const {
+                                Eigen::Ref<const VecX> a, std::span<const Index> of) const {
   WHIRL_EXPECTS(w.outside < 0);
-  for (Index i = 0; i < nodes(); ++i) {
+  for (const Index i : of) {
     const Mat3& E = *w.nodes[at(i)].chart;
     rotation::Director& dir = w.director[at(i)];
     rotation::director(q.segment<2>(6 * i + 4), v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4),
@@ -469,40 +473,74 @@ bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const 
   return r.allFinite();
 }
 
+System::Blocks System::every_block() const {
+  Blocks out;
+  out.nodes.resize(at(nodes()));
+  std::iota(out.nodes.begin(), out.nodes.end(), Index{0});
+  out.slots.resize(at(pattern_->blocks()));
+  std::iota(out.slots.begin(), out.slots.end(), Index{0});
+  return out;
+}
+
+System::Blocks System::blocks_of(const std::vector<std::size_t>& terms) const {
+  if (!followers_.empty()) return everywhere_;
+  std::vector<unsigned char> touched(at(nodes()), 0);
+  std::vector<Index> of_term;
+  for (const std::size_t k : terms) {
+    of_term.clear();
+    terms_[k]->list_nodes(of_term);
+    for (const Index i : of_term)
+      touched[at(i)] = 1;
+  }
+  Blocks out;
+  for (Index i = 0; i < nodes(); ++i) {
+    if (!touched[at(i)]) continue;
+    out.nodes.push_back(i);
+    for (Index s = pattern_->row_start()[at(i)]; s < pattern_->row_start()[at(i) + 1]; ++s)
+      if (touched[at(pattern_->cols()[at(s)])]) out.slots.push_back(s);
+  }
+  return out;
+}
+
 bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                      Selection only) const {
+  return tangent_blocks(w, f, t, q, v, a, out, only ? *only : all_terms_, everywhere_);
+}
+
+bool System::tangent_blocks(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                            Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
+                            const std::vector<std::size_t>& only, const Blocks& where) const {
   WHIRL_EXPECTS(out.M.value_count() == at(36 * pattern_->blocks()));
   WHIRL_EXPECTS(out.C.value_count() == out.M.value_count() &&
                 out.K.value_count() == out.M.value_count());
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   if (followers_.empty())
-    evaluate_jacobians(w, q, v, a);
+    evaluate_jacobians(w, q, v, a, where.nodes);
   else
-    evaluate_jacobians(w, w.q, w.v, w.a);
-  for (auto& x : w.force)
-    x.setZero();
-  w.M.set_zero();
-  w.C.set_zero();
-  w.K.set_zero();
-  if (only)
-    for (std::size_t k : *only) {
-      terms_[k]->add_force(w);
-      terms_[k]->add_tangent(w);
-    }
-  else
-    for (const auto& term : terms_) {
-      term->add_force(w);
-      term->add_tangent(w);
-    }
-
+    evaluate_jacobians(w, w.q, w.v, w.a, where.nodes);
+  for (const Index i : where.nodes)
+    w.force[at(i)].setZero();
+  for (la::BlockMatrix<7>* m : {&w.M, &w.C, &w.K})
+    for (const Index s : where.slots)
+      m->block(s).setZero();
+  for (const std::size_t k : only) {
+    terms_[k]->add_force(w);
+    terms_[k]->add_tangent(w);
+  }
   if (!followers_.empty()) followers_.carry_tangent(w, f);
-  // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
+  project_tangent(w, out, where);
+  return true;
+}
+
+void System::project_tangent(const Workspace& w, la::MCK& out, const Blocks& where) const {
   const auto& start = pattern_->row_start();
   const auto& cols = pattern_->cols();
-  for (Index i = 0; i < nodes(); ++i) {
+  auto slot = where.slots.begin();
+  for (const Index i : where.nodes) {
     const Mat32& Di = w.D[at(i)];
-    for (Index s = start[at(i)]; s < start[at(i) + 1]; ++s) {
+    for (; slot != where.slots.end() && *slot < start[at(i) + 1]; ++slot) {
+      const Index s = *slot;
       const std::size_t j = at(cols[at(s)]);
       const double *M = w.M.block(s).data(), *C = w.C.block(s).data(), *K = w.K.block(s).data();
       const Mat32 &D = w.D[j], &D1 = w.D_rate[j], &D2 = w.D_accel[j];
@@ -526,7 +564,6 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
     out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() += w.director[at(i)].curvature(
         w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
   }
-  return true;
 }
 
 Energy System::exchange(const Workspace& w) const {

@@ -161,6 +161,17 @@ class System {
   bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                Selection only = nullptr) const;
+  /// Where the tangents of some terms stand; the other blocks are zero.
+  struct Blocks {
+    std::vector<Index> nodes, slots;  ///< ascending
+  };
+  /// Everything where joints carry tangents along.
+  Blocks blocks_of(const std::vector<std::size_t>& terms) const;
+  /// tangent() of some terms, these blocks alone: the others of `out` stay as they are.
+  /// @pre where = blocks_of(only); the rest as of tangent().
+  bool tangent_blocks(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
+                      const std::vector<std::size_t>& only, const Blocks& where) const;
   /// Some elements have internal unknowns that they balance themselves (relax() of a kernel).
   bool relaxes() const;
   /// Puts those into q, in balance at rest with everything else where it is; nothing happens where a
@@ -185,6 +196,7 @@ class System {
                       Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a,
                       std::span<const Index> only) const;
   void list_exchanging();
+  Blocks every_block() const;
   void evaluate_own_axes(Workspace& w) const;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   /// What is left of the forces after joints have carried them, and the loads of joints.
@@ -193,9 +205,12 @@ class System {
   /// W, what the change of the base's acceleration adds to the potential of the weight in it.
   double field_power(const Workspace& w) const;
 
-  /// The derivatives of the node Jacobians, after evaluate_nodes.
+  /// The derivatives of the Jacobians of some nodes, after evaluate_nodes.
   void evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                          Eigen::Ref<const VecX> a) const;
+                          Eigen::Ref<const VecX> a, std::span<const Index> of) const;
+  /// The blocks in q-space: columns of gamma through D and its rates (node.hpp), then rows through
+  /// D^T.
+  void project_tangent(const Workspace& w, la::MCK& out, const Blocks& where) const;
 
   std::vector<NodeDef> defs_;
   std::vector<int> line_of_;     ///< per node, as the node kernel reads it
@@ -211,6 +226,8 @@ class System {
   std::unordered_map<std::type_index, std::size_t> by_type_;
   std::vector<std::size_t> cornered_;
   std::vector<Index> exchanging_;
+  std::vector<std::size_t> all_terms_;
+  Blocks everywhere_;
   std::vector<Keeper> keepers_;
   std::vector<double> kept_;  ///< at first
   bool linear_ = false;

@@ -157,6 +157,30 @@ TEST(Frames, NoForceNorEnergyDependsOnThem) {
   }
 }
 
+/// Blocks of some terms are those of their tangent, bit for bit; nothing stands elsewhere.
+TEST(Tangents, OfSomeTermsStandInTheirBlocks) {
+  const System s = everything();
+  std::mt19937 rng(3);
+  const State x = random_state(s, rng);
+  for (std::size_t k = 0; k < s.terms().size(); ++k) {
+    const std::vector<std::size_t> only{k};
+    const System::Blocks where = s.blocks_of(only);
+    Workspace w = s.make_workspace(), used = s.make_workspace();
+    la::MCK all = s.make_matrices(), some = s.make_matrices();
+    ASSERT_TRUE(s.tangent(w, x.frames, 0.3, x.q, x.v, x.a, all, &only));
+    ASSERT_TRUE(s.tangent(used, x.frames, 0.3, x.q, x.v, x.a, some));  // leaves its blocks behind
+    some = s.make_matrices();
+    ASSERT_TRUE(s.tangent_blocks(used, x.frames, 0.3, x.q, x.v, x.a, some, only, where));
+    const std::string kind(s.terms()[k]->kind());
+    for (const auto part : {&la::MCK::M, &la::MCK::C, &la::MCK::K})
+      for (Index slot = 0; slot < s.pattern().blocks(); ++slot)
+        EXPECT_EQ((some.*part).block(slot), (all.*part).block(slot)) << kind << " " << slot;
+    const auto full = static_cast<std::size_t>(s.pattern().blocks());
+    const bool at_one_node = kind.find("disk") != std::string::npos;
+    EXPECT_TRUE(!at_one_node || where.slots.size() < full) << kind;
+  }
+}
+
 TEST(Frames, TangentsOfMovedNodesAreExact) {
   const System s = everything();
   std::mt19937 rng(5);
