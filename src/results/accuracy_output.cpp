@@ -146,9 +146,17 @@ analysis::SteadyRotation rotation_at(const TransientEnd& end, double speed) {
   return running;
 }
 
+/// These are all up to a frequency, and as many that move as are listed in any case.
+bool enough(const std::vector<analysis::WhirlMode>& modes, Index asked, double highest) {
+  if (static_cast<Index>(modes.size()) < asked || modes.back().frequency <= highest) return false;
+  const auto moving =
+      std::count_if(modes.begin(), modes.end(), [](const auto& m) { return m.frequency > 0.0; });
+  return moving >= lowest_modes;
+}
+
 /// The lowest modes: all up to a frequency, of twice as many as are listed in any case. Where nothing
-/// drives free motions but the rotation, what is faster need not be found: half of them take half the
-/// time.
+/// drives free motions but the rotation, what is faster need not be found, but for the one that shows
+/// that there is none between: half of them take half the time.
 std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double speed,
                                             double highest) {
   constexpr Index most = 2 * lowest_modes;
@@ -157,14 +165,11 @@ std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double
   options.count = most;
   if (!options.judge) {
     const la::MCK& conservative = linear.conservative_at(speed);
-    options.count =
-        std::max(lowest_modes, modes_below(linear.system(), conservative, highest, most));
+    const Index below = modes_below(linear.system(), conservative, highest, most);
+    options.count = std::min(std::max(lowest_modes, below + 1), most);
   }
   std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, speed, options);
-  if (options.count == most) return modes;
-  const bool all = static_cast<Index>(modes.size()) == options.count &&
-                   modes.front().frequency > 0.0 && modes.back().frequency > highest;
-  if (all) return modes;
+  if (options.count == most || enough(modes, options.count, highest)) return modes;
   options.count = most;
   return analysis::whirl_modes(linear, speed, options);
 }
