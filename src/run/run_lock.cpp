@@ -64,7 +64,10 @@ RunLock::RunLock(const fs::path& folder) : file_(folder / ".whirl.lock") {
     ::close(descriptor_);
   }
   const std::string number = fmt::format("{}\n", ::getpid());
-  if (::ftruncate(descriptor_, 0) != 0 ||
+  // a file that was cut is written to the disk when it is closed, for which a new one need not wait
+  struct stat found {};
+  const bool cut = ::fstat(descriptor_, &found) == 0 && found.st_size > 0;
+  if ((cut && ::ftruncate(descriptor_, 0) != 0) ||
       ::pwrite(descriptor_, number.data(), number.size(), 0) < 0) {
     // the number only serves the message of the other one
   }
