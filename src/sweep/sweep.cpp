@@ -31,6 +31,16 @@ namespace fs = std::filesystem;
 /// What a sweep reads nothing from is not written.
 const char* const tables_alone[] = {"output.report=false", "output.vtk=[]"};
 
+/// The folder stays: making it anew costs more than what stands in it.
+void empty(const fs::path& folder) {
+  std::error_code ec, ignored;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
+    found.push_back(it->path());
+  for (const fs::path& file : found)
+    fs::remove_all(file, ignored);
+}
+
 class Runner {
  public:
   /// rank: of this process among those of the sweep.
@@ -47,8 +57,7 @@ class Runner {
     const fs::path results = folder_of(run, worker);
     io::set_waiting_for_disk(options_.keep);
     try {
-      std::error_code ec;
-      fs::remove_all(results, ec);  // tables of the run before must not be taken for this one's
+      empty(results);  // tables of the run before must not be taken for this one's
       row.exit = steps_of(run, results);
       for (const Response& r : plan_.responses)
         row.answers.push_back(answer(r, results));

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <deque>
 #include <fcntl.h>
 #include <optional>
 #include <poll.h>
@@ -83,44 +85,54 @@ class Worker {
         tasks_(std::exchange(o.tasks_, -1)),
         answers_(std::exchange(o.answers_, -1)),
         text_(std::move(o.text_)),
-        task_(o.task_),
-        began_(o.began_) {}
+        tasks_given_(std::move(o.tasks_given_)),
+        began_(o.began_),
+        quick_(o.quick_) {}
   Worker& operator=(Worker&& o) noexcept {
     std::swap(number_, o.number_);
     std::swap(pid_, o.pid_);
     std::swap(tasks_, o.tasks_);
     std::swap(answers_, o.answers_);
     std::swap(text_, o.text_);
-    std::swap(task_, o.task_);
+    std::swap(tasks_given_, o.tasks_given_);
     std::swap(began_, o.began_);
+    std::swap(quick_, o.quick_);
     return *this;
   }
   ~Worker() { finish(); }
 
-  bool busy() const { return task_.has_value(); }
-  std::int64_t task() const { return *task_; }
+  bool busy() const { return !tasks_given_.empty(); }
+  /// May be given one more while it is busy: it would wait for this process as long as it works.
+  bool takes_ahead() const { return quick_ && tasks_given_.size() == 1; }
+  /// The first is worked on, the others wait.
+  const std::deque<std::int64_t>& tasks() const { return tasks_given_; }
   int number() const { return number_; }
   int answers() const { return answers_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
 
-  /// False: the process is gone.
-  bool give(std::int64_t task) {
-    WHIRL_EXPECTS(!busy());
-    task_ = task;
-    began_ = Clock::now();
-    return write_all(tasks_, reinterpret_cast<const char*>(&task), sizeof task);
+  /// One whose process is gone shows in take().
+  void give(std::int64_t task) {
+    if (!busy()) began_ = Clock::now();
+    tasks_given_.push_back(task);
+    write_all(tasks_, reinterpret_cast<const char*>(&task), sizeof task);
   }
-  /// Reads what is there. The answer when it is whole; nothing yet, or a process that is gone
-  /// (`gone`).
-  std::optional<std::string> take(bool& gone) {
+  /// Reads what is there. The answers that are whole, in the order of the tasks; or a process that is
+  /// gone (`gone`).
+  std::vector<std::pair<std::int64_t, std::string>> take(bool& gone) {
     char buffer[4096];
     const ssize_t n = ::read(answers_, buffer, sizeof buffer);
     gone = n == 0 || (n < 0 && errno != EINTR && errno != EAGAIN);
     if (n > 0) text_.append(buffer, static_cast<std::size_t>(n));
-    if (text_.empty() || text_.back() != '\n') return std::nullopt;
-    text_.pop_back();
-    task_.reset();
-    return std::exchange(text_, {});
+    std::vector<std::pair<std::int64_t, std::string>> whole;
+    for (auto end = text_.find('\n'); end != std::string::npos && busy(); end = text_.find('\n')) {
+      constexpr double short_beside_waiting = 0.1;  // s
+      quick_ = seconds() < short_beside_waiting;
+      began_ = Clock::now();
+      whole.emplace_back(tasks_given_.front(), text_.substr(0, end));
+      tasks_given_.pop_front();
+      text_.erase(0, end + 1);
+    }
+    return whole;
   }
   void kill() const { ::kill(pid_, SIGKILL); }
   /// Waits for its end; the signal that ended it, or 0.
@@ -150,8 +162,9 @@ class Worker {
   pid_t pid_ = -1;
   int tasks_ = -1, answers_ = -1;
   std::string text_;
-  std::optional<std::int64_t> task_;
+  std::deque<std::int64_t> tasks_given_;
   Clock::time_point began_;
+  bool quick_ = false;  ///< the last answer came soon
 };
 
 /// A worker whose process ended is replaced by a fresh one of the same number.
@@ -181,6 +194,37 @@ class Crew {
 
 }  // namespace
 
+namespace {
+
+/// What is still to be given out.
+class Tasks {
+ public:
+  explicit Tasks(std::span<const std::int64_t> all) : all_(all) {}
+  std::size_t left() const { return all_.size() - next_ + returned_.size(); }
+  std::int64_t next() {
+    if (returned_.empty()) return all_[next_++];
+    const std::int64_t task = returned_.front();
+    returned_.pop_front();
+    return task;
+  }
+  void put_back(std::int64_t task) { returned_.push_back(task); }
+
+ private:
+  std::span<const std::int64_t> all_;
+  std::size_t next_ = 0;
+  std::deque<std::int64_t> returned_;  ///< that waited behind one that ended its process
+};
+
+/// Everyone has a task, and those whose tasks are short a second one.
+void give_out(Tasks& tasks, std::vector<Worker>& workers) {
+  for (Worker& w : workers)
+    if (!w.busy() && tasks.left() > 0) w.give(tasks.next());
+  for (Worker& w : workers)
+    if (w.takes_ahead() && tasks.left() > workers.size()) w.give(tasks.next());
+}
+
+}  // namespace
+
 void run_in_workers(std::span<const std::int64_t> tasks, const WorkerOptions& options,
                     const Run& run,
                     const std::function<void(std::int64_t, Ended, const std::string&, int)>& take) {
@@ -190,37 +234,31 @@ void run_in_workers(std::span<const std::int64_t> tasks, const WorkerOptions& op
     ~IgnorePipe() { std::signal(SIGPIPE, before); }
   } ignore;
   Crew crew(options, run);
-  std::size_t next = 0, open = 0;
+  Tasks left(tasks);
   const auto end = [&](std::size_t k, Ended how) {
-    const std::int64_t task = crew.workers()[k].task();
+    const std::deque<std::int64_t> given = crew.workers()[k].tasks();
     const int signal = crew.replace(k);
-    --open;
-    take(task, how, {}, signal);
+    for (std::size_t i = 1; i < given.size(); ++i)
+      left.put_back(given[i]);
+    take(given.front(), how, {}, signal);
   };
   for (;;) {
-    const bool stop = interrupt::flag.load(std::memory_order_relaxed);
-    for (Worker& w : crew.workers())
-      if (!stop && !w.busy() && next < tasks.size()) {
-        w.give(tasks[next++]);  // one that is gone shows below
-        ++open;
-      }
-    if (open == 0) return;
+    std::vector<Worker>& workers = crew.workers();
+    if (!interrupt::flag.load(std::memory_order_relaxed)) give_out(left, workers);
+    if (std::none_of(workers.begin(), workers.end(), [](const Worker& w) { return w.busy(); }))
+      return;
     std::vector<pollfd> wait;
-    for (const Worker& w : crew.workers())
+    for (const Worker& w : workers)
       wait.push_back({w.answers(), POLLIN, 0});
     if (::poll(wait.data(), wait.size(), 100) < 0 && errno != EINTR) return;
     for (std::size_t k = wait.size(); k-- > 0;) {  // from the back: a replaced one goes there
-      Worker& w = crew.workers()[k];
+      Worker& w = workers[k];
       if (!w.busy()) continue;
       if ((wait[k].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
-        const std::int64_t task = w.task();
         bool gone = false;
-        if (const auto text = w.take(gone)) {
-          --open;
-          take(task, Ended::answered, *text, 0);
-        } else if (gone) {
-          end(k, Ended::crashed);
-        }
+        for (const auto& [task, text] : w.take(gone))
+          take(task, Ended::answered, text, 0);
+        if (gone && w.busy()) end(k, Ended::crashed);
       } else if (crew.late(w)) {
         w.kill();
         end(k, Ended::out_of_time);

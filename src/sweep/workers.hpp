@@ -16,7 +16,8 @@ struct WorkerOptions {
 };
 
 /// Calls `run` for every task in processes forked from this one, which must have one thread, handing
-/// out tasks as processes get free, and `take` here with what each gave, in the order they finish.
+/// out tasks as processes get free (short ones, of which many are left, one ahead), and `take` here
+/// with what each gave, in the order they finish.
 /// worker: 0 .. processes - 1. Stops handing out once the program is to be interrupted
 /// (core/interrupt.hpp); what runs then is waited for.
 /// run: its text must not hold a line end but may end with one; it must not throw. take: the task,

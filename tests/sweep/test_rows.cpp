@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <thread>
 #include <unistd.h>
 
@@ -127,6 +128,26 @@ TEST(SweepWorkers, CrashesAndHangsCostTheirOwnRun) {
     else
       EXPECT_EQ(texts[task], "task " + std::to_string(task) + std::string(20000, 'x'));
   }
+}
+
+TEST(SweepWorkers, TasksThatWaitBehindACrashAreDoneOnce) {
+  std::vector<std::int64_t> tasks(300);
+  std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
+  const auto crashes = [](std::int64_t task) { return task % 7 == 3; };
+  const auto run = [&](std::int64_t task, int) -> std::string {
+    if (crashes(task)) ::_exit(7);
+    return std::to_string(task);
+  };
+  std::map<std::int64_t, int> seen;
+  run_in_workers(tasks, {2, 0}, run,
+                 [&](std::int64_t task, Ended how, const std::string& text, int) {
+                   ++seen[task];
+                   EXPECT_EQ(how, crashes(task) ? Ended::crashed : Ended::answered) << task;
+                   EXPECT_EQ(text, crashes(task) ? "" : std::to_string(task));
+                 });
+  ASSERT_EQ(seen.size(), tasks.size());
+  for (const auto& [task, times] : seen)
+    EXPECT_EQ(times, 1) << task;
 }
 
 }  // namespace
