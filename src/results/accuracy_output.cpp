@@ -175,9 +175,10 @@ std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double
 }
 
 /// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
-/// lowest in any case, and what grows.
-std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
-                                         double largest_spin) {
+/// lowest in any case, and what grows. near: the equilibrium is sought from there; null: from the
+/// reference configuration.
+std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed, double largest_spin,
+                                         const system::State* near) {
   const run::Job& job = end.job;
   analysis::SteadyRotation running = rotation_at(end, speed);
   std::vector<double> spin;
@@ -189,6 +190,7 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
   analysis::Linearizer linear(job.system(), std::move(running), o);
+  if (near) linear.start_from(*near);
   std::vector<analysis::WhirlMode> modes = slow_modes(linear, speed, beside_the_spin * fastest);
   const assembly::MeshError mesh(job.model, job.mesh, job.built);
   std::vector<Contained> out;
@@ -209,6 +211,7 @@ class AccuracyOutput final : public TransientOutput {
                  const analysis::TiltWatch& tilt)
       : energy_(energy),
         tilt_(tilt),
+        begun_(s.law.linear && !s.resumed ? &s.start.state : nullptr),
         steps_(s.job.reference()) {}
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
@@ -242,6 +245,7 @@ class AccuracyOutput final : public TransientOutput {
 
   const analysis::EnergyBalance& energy_;
   const analysis::TiltWatch& tilt_;
+  const system::State* begun_;  ///< near the equilibrium that small motions are about, or null
   analysis::StepHistogram steps_;
 };
 
@@ -309,7 +313,7 @@ void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& wa
   const double speed = end.result.end.v[6 * end.job.reference() + system::spin_phi];
   std::vector<Contained> modes;
   try {
-    modes = modes_that_matter(end, speed, steps_.largest_spin());
+    modes = modes_that_matter(end, speed, steps_.largest_spin(), begun_);
   } catch (const Error& e) {
     end.summary["accuracy"]["modes"] = std::string("not found at the end of the run: ") + e.what();
     return;
