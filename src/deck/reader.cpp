@@ -199,9 +199,8 @@ bool Reader::quantity(const Key& k, double& target, const char* unit, Range rang
   note_shape(k, KeyShape::Kind::quantity, unit);
   const Member* m = find(k);
   if (!m) {
-    if (std::isfinite(target))
-      put_default(k,
-                  *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
+    if (shows_default(k) && std::isfinite(target))
+      put(k, *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
     return false;
   }
   if (k.plain_zero && m->value.is_number() && m->value.number() == 0 && inside(range, 0)) {
@@ -281,11 +280,11 @@ bool Reader::quantities(const Key& k, std::vector<double>& target, const char* u
   note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) {
-    if (!target.empty()) {
+    if (shows_default(k) && !target.empty()) {
       Value list = Value::make_array();
       for (double x : target)
         list.items.push_back(*unit ? Value::of_text(units::format(x, unit)) : Value::of_number(x));
-      put_default(k, std::move(list));
+      put(k, std::move(list));
     }
     return false;
   }

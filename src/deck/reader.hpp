@@ -58,8 +58,10 @@ class Reader : public Visitor {
   void note_shape(const Key& k, KeyShape::Kind kind, const char* unit = "") {
     scope().shapes.push_back({k.name, kind, unit});
   }
+  /// The resolved deck shows what holds without the key.
+  static bool shows_default(const Key& k) { return !k.absent && !k.required; }
   void put_default(const Key& k, Value v) {
-    if (!k.absent && !k.required) put(k, std::move(v));
+    if (shows_default(k)) put(k, std::move(v));
   }
   void problem(const char* code, const Spot&, std::string message, std::string hint = {});
   bool wrong_type(const char* key, const Value&, const char* wanted, std::string hint = {});

@@ -40,6 +40,29 @@ const std::array<std::string, 36>& entry_names(char prefix) {
   return names[prefix == 'k' ? 0 : prefix == 'c' ? 1 : 2];
 }
 
+namespace {
+
+/// What the entries mean, in the order of their names.
+const std::array<std::string, 36>& entry_docs(std::size_t of) {
+  static const auto docs = [] {
+    std::array<std::array<std::string, 36>, 3> r;
+    static constexpr const char* what[3] = {"stiffness", "damping", "mass"};
+    static constexpr const char* axes[3] = {"x", "y", "z"};
+    for (std::size_t p = 0; p < 3; ++p)
+      for (std::size_t i = 0; i < 36; ++i) {
+        const std::size_t row = i / 6, column = i % 6;
+        const char* const force = row >= 3 ? "moment about" : "force along";
+        const char* const motion = column >= 3 ? "rotation about" : "motion along";
+        r[p][i] = fmt::format("{}: {} {} from {} {}", what[p], force, axes[row % 3], motion,
+                              axes[column % 3]);
+      }
+    return r;
+  }();
+  return docs[of];
+}
+
+}  // namespace
+
 void describe_entries(Visitor& v, Matrix<6>& m, char prefix) {
   static constexpr const char* units[3][3] = {
       {"N/m", "N/rad", "N.m/rad"}, {"N.s/m", "N.s/rad", "N.m.s/rad"}, {"kg", "kg.m", "kg.m^2"}};
@@ -48,16 +71,13 @@ void describe_entries(Visitor& v, Matrix<6>& m, char prefix) {
   const std::size_t p = prefix == 'k' ? 0 : prefix == 'c' ? 1 : 2;
   const auto& names = entry_names(prefix);
   const auto entry = [&](Index row, Index column, const char* absent, bool listed) {
-    static constexpr const char* axes[3] = {"x", "y", "z"};
     const bool turn = row >= 3, turned = column >= 3;
-    Key key = optional(names[static_cast<std::size_t>(6 * row + column)].c_str(), absent);
+    const auto i = static_cast<std::size_t>(6 * row + column);
+    Key key = optional(names[i].c_str(), absent);
     key.listed = listed;
-    const std::string doc =
-        fmt::format("{}: {} {} from {} {}", what[p], turn ? "moment about" : "force along",
-                    axes[row % 3], turned ? "rotation about" : "motion along", axes[column % 3]);
     return v.quantity(key, m(row, column),
                       units[p][static_cast<std::size_t>(turn) + static_cast<std::size_t>(turned)],
-                      any, doc.c_str());
+                      any, entry_docs(p)[i].c_str());
   };
   for (const auto& [row, column] :
        {std::pair{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 1}, {0, 1}, {0, 2}, {1, 0}, {2, 0}})
