@@ -103,6 +103,7 @@ bool Manifest::inside(const std::string& name) const {
 }
 
 void Manifest::append(const std::string& line) {
+  if (!listing_) return;
   const fs::path list = root_ / file_name;
   const int fd = ::open(list.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (fd < 0) io_failure(list, "cannot write", errno);

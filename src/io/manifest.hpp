@@ -26,6 +26,8 @@ class Manifest {
   /// @throws Error (E16) when another owner of this run has written it; owner: who writes, empty: nobody
   /// that could meet another.
   void claim(std::string_view name, const std::string& owner = {});
+  /// From now on nothing is listed: of a folder that is thrown away.
+  void list_nothing() { listing_ = false; }
   bool lists(std::string_view name) const { return names_.count(std::string(name)) != 0; }
   /// Removes the listed regular files that `which` accepts. Their names stay listed.
   void remove(const std::function<bool(const std::string& name)>& which) const;
@@ -38,6 +40,7 @@ class Manifest {
   std::unordered_set<std::string> names_;
   std::unordered_map<std::string, std::string> owner_;  ///< of files written in this run
   bool older_ = false;                                  ///< results of a program that kept no list
+  bool listing_ = true;
 };
 
 }  // namespace whirl::io

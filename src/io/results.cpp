@@ -151,11 +151,22 @@ void ResultsFolder::remove(const std::function<bool(const std::string&)>& which)
   manifest_->remove(which);
 }
 
+void ResultsFolder::write_only(std::vector<std::string> names) {
+  only_ = std::move(names);
+  manifest_->list_nothing();
+}
+
+bool ResultsFolder::wanted(std::string_view name) const {
+  if (only_.empty() || std::find(only_.begin(), only_.end(), name) != only_.end()) return true;
+  manifest_->claim(name, owner_);
+  return false;
+}
+
 void ResultsFolder::write_text(std::string_view name, std::string_view content) const {
-  write_atomic(path(name), content);
+  if (wanted(name)) write_atomic(path(name), content);
 }
 void ResultsFolder::write_json(std::string_view name, const Value& value) const {
-  write_atomic(path(name), to_json(value));
+  if (wanted(name)) write_atomic(path(name), to_json(value));
 }
 
 void ResultsFolder::write_table(std::string_view name, const Table& table) const {
@@ -168,7 +179,7 @@ void ResultsFolder::write_table(std::string_view name, const Table& table) const
                                      [&](const auto& row) { return unexpected(row[k]); });
     note_nonfinite(name, table.columns[k].name, static_cast<std::size_t>(count));
   }
-  write_csv(path(name), table);
+  if (wanted(name)) write_csv(path(name), table);
 }
 
 }  // namespace whirl::io

@@ -137,6 +137,9 @@ class ResultsFolder {
   /// written.
   explicit ResultsFolder(std::filesystem::path root);
   const std::filesystem::path& root() const { return root_; }
+  /// Of texts and tables these alone are written, and no list of what is: for a folder from which
+  /// they are read at once, and which is thrown away. Names as in write_table().
+  void write_only(std::vector<std::string> names);
   /// Who writes from now on, by name: two owners do not write one file.
   void set_owner(std::string owner) { owner_ = std::move(owner); }
   /// Path of a file that will be written in it, and listed as such; makes the folders in between.
@@ -153,8 +156,12 @@ class ResultsFolder {
 
  private:
   std::filesystem::path root_;
+  /// Claims a file; whether it is to be written.
+  bool wanted(std::string_view name) const;
+
   std::shared_ptr<Manifest> manifest_;
   std::string owner_;
+  std::vector<std::string> only_;  ///< empty: all
 };
 
 }  // namespace whirl::io

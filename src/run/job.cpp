@@ -20,7 +20,9 @@ Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path
       options(o),
       mesh(meshes::make_mesh(m)),
       scene(meshes::make_scene(m, mesh)),
-      folder(root) {}
+      folder(root) {
+  if (!options.only_files.empty()) folder.write_only(options.only_files);
+}
 
 Job::Job(const model::Model& m, const Job& parent, const RunOptions& o)
     : model(m),

@@ -18,6 +18,9 @@ struct RunOptions {
   bool savings = false;          ///< measure what leaving out parts of the general model saves
   bool resume = false;           ///< continue from the last checkpoint of the results folder
   std::filesystem::path output;  ///< results folder; empty: as the deck says
+  /// Texts and tables that are written ("STEP_modes.csv"), into a folder of this run alone from which
+  /// they are read at once; empty: everything, into a folder that is kept.
+  std::vector<std::string> only_files;
   /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps
   /// that vary one. Throws as load_model().
   std::function<model::Model(const std::string& setting)> variant;

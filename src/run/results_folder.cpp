@@ -79,8 +79,9 @@ void check_space(const model::Model& model, const RunOptions& options) {
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options) {
   const std::filesystem::path root =
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
-  const io::ResultsFolder folder(root);
   check_space(model, options);
+  if (!options.only_files.empty()) return root;
+  const io::ResultsFolder folder(root);
   if (!options.resume) folder.remove(is_of_one_run);
   folder.write_text("resolved.toml", model.resolved);
   io::Value run = io::Value::object();

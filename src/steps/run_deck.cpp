@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 
 namespace whirl::steps {
 
@@ -17,7 +18,8 @@ int run_deck(const model::Model& model, const run::RunOptions& options) {
   run::install_interrupt_handlers();
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
-  const run::RunLock lock(folder);
+  std::optional<run::RunLock> lock;
+  if (options.only_files.empty()) lock.emplace(folder);
   if (options.resume) {
     run::check_checkpoints(folder, model);  // before anything in the folder changes
     if (!options.quiet && !run::has_checkpoint(folder, model))

@@ -100,6 +100,9 @@ class Runner {
     o.quiet = true;
     o.jobs = 1;
     o.output = results;
+    if (!whole)
+      for (const Response& r : plan_.responses)
+        o.only_files.push_back(r.table + ".csv");
     o.variant = [&](const std::string& setting) {
       deck::ReadOptions one = read;
       one.set.push_back(setting);

@@ -37,6 +37,28 @@ std::array<double, 4> row_of(std::uint64_t k) {
           std::ldexp(u(rng), static_cast<int>(k % 2000) - 1000), 1000 * u(rng)};
 }
 
+TEST(ResultsFolder, WritesWhatIsAskedForAlone) {
+  TempFolder dir;
+  ResultsFolder folder(dir.path());
+  folder.write_only({"a.csv"});
+  Table table;
+  table.columns = {{"x", "m", ""}};
+  table.add({1.0});
+  folder.write_table("a.csv", table);
+  folder.write_table("b.csv", table);
+  folder.write_text("resolved.toml", "x");
+  folder.write_json("summary.json", Value::object());
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dir.path()))
+    names.push_back(entry.path().filename().string());
+  EXPECT_EQ(names, std::vector<std::string>{"a.csv"});
+  EXPECT_EQ(read_csv(dir / "a.csv").values.front(), std::vector<double>{1.0});
+  folder.set_owner("one");
+  folder.write_table("b.csv", table);
+  folder.set_owner("other");
+  EXPECT_THROW(folder.write_table("b.csv", table), Error);
+}
+
 TEST(ResultsFolder, HalfWrittenFilesOfKilledRunsGo) {
   TempFolder dir;
   const pid_t dead = ::fork();
