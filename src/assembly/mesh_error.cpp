@@ -58,33 +58,55 @@ MatC<2 * W> condensed(const std::array<MatC<2 * W>, parts>& piece) {
 
 }  // namespace
 
-struct MeshError::Element {
-  Index line = 0;
-  std::array<Index, 2> node{};
+/// What is the same for elements that are alike.
+struct MeshError::Kind {
   ShaftElementConstants c;                          ///< as assembled
   std::array<ShaftElementConstants, parts> pieces;  ///< between its end points
   Matrix<4> K4;                                     ///< on node coordinates
   std::array<Matrix<4>, parts> piece_K4;
 
-  Complex defect(Complex lambda, double spin, const VecXc& x) const;
-
- private:
-  Complex bending_defect(Complex lambda, Complex couple, const Eigen::Vector4cd& q) const;
+  MatC<4> bending_defect(Complex lambda, Complex couple) const;
+  Defects defects(Complex lambda, double spin) const;
 };
 
-Complex MeshError::Element::bending_defect(Complex lambda, Complex couple,
-                                           const Eigen::Vector4cd& q) const {
+/// dD of an element at one lambda and spin.
+struct MeshError::Defects {
+  MatC<4> against, with;  ///< of y + i z and y - i z
+  MatC<2> twist, stretch;
+};
+
+struct MeshError::Element {
+  Index line = 0;
+  std::array<Index, 2> node{};
+  std::size_t kind = 0;
+
+  Complex defect(const Defects& of, const VecXc& x) const;
+};
+
+MatC<4> MeshError::Kind::bending_defect(Complex lambda, Complex couple) const {
   std::array<MatC<4>, parts> piece;
   for (std::size_t k = 0; k < parts; ++k)
     piece[k] = bending(pieces[k], piece_K4[k], lambda, couple);
   Matrix<4> to_ends = Matrix<4>::Identity();  // r = x + o d
   to_ends(0, 1) = c.o1;
   to_ends(2, 3) = c.o2;
-  const Eigen::Vector4cd e = to_ends.cast<Complex>() * q;
-  return e.dot(condensed<2>(piece) * e) - q.dot(bending(c, K4, lambda, couple) * q);
+  const MatC<4> ends = to_ends.cast<Complex>();
+  return ends.transpose() * condensed<2>(piece) * ends - bending(c, K4, lambda, couple);
 }
 
-Complex MeshError::Element::defect(Complex lambda, double spin, const VecXc& x) const {
+MeshError::Defects MeshError::Kind::defects(Complex lambda, double spin) const {
+  const Complex couple = Complex(0, 1) * lambda * spin;
+  std::array<MatC<2>, parts> twists, stretches;
+  for (std::size_t k = 0; k < parts; ++k) {
+    twists[k] = twist(pieces[k], lambda);
+    stretches[k] = axial(pieces[k], lambda);
+  }
+  return {bending_defect(lambda, -couple), bending_defect(lambda, couple),
+          condensed<1>(twists) - assembly::twist(c, lambda),
+          condensed<1>(stretches) - axial(c, lambda)};
+}
+
+Complex MeshError::Element::defect(const Defects& of, const VecXc& x) const {
   const auto at = [&](int end, int unknown) {
     return x[6 * node[static_cast<std::size_t>(end)] + unknown];
   };
@@ -92,17 +114,11 @@ Complex MeshError::Element::defect(Complex lambda, double spin, const VecXc& x) 
   const Eigen::Vector4cd y(at(0, 1), at(0, 5), at(1, 1), at(1, 5));
   const Eigen::Vector4cd z(at(0, 2), -at(0, 4), at(1, 2), -at(1, 4));
   const Complex i(0, 1);
-  const Complex couple = i * lambda * spin;
-  Complex sum = 0.5 * (bending_defect(lambda, -couple, y + i * z) +
-                       bending_defect(lambda, couple, y - i * z));
-  std::array<MatC<2>, parts> twists, stretches;
-  for (std::size_t k = 0; k < parts; ++k) {
-    twists[k] = twist(pieces[k], lambda);
-    stretches[k] = axial(pieces[k], lambda);
-  }
+  const Eigen::Vector4cd forward = y + i * z, backward = y - i * z;
+  Complex sum = 0.5 * (forward.dot(of.against * forward) + backward.dot(of.with * backward));
   const Eigen::Vector2cd phi(at(0, 3), at(1, 3)), u(at(0, 0), at(1, 0));
-  sum += phi.dot((condensed<1>(twists) - twist(c, lambda)) * phi);
-  sum += u.dot((condensed<1>(stretches) - axial(c, lambda)) * u);
+  sum += phi.dot(of.twist * phi);
+  sum += u.dot(of.stretch * u);
   return sum;
 }
 
@@ -123,14 +139,32 @@ class Pieces {
             section.part(double(k) / parts, double(k + 1) / parts), l / parts);
     last_ = &e;
     length_ = l;
+    made_ = !alike;
     return set_;
   }
+  /// The last element was not like the one before.
+  bool made() const { return made_; }
 
  private:
   const meshes::Element* last_ = nullptr;
   double length_ = 0;
+  bool made_ = false;
   Set set_;
 };
+
+/// But for rounding.
+template <class A>
+bool same(const A& a, const A& b) {
+  constexpr double rounding = 1e-11;
+  return (a - b).cwiseAbs().maxCoeff() <= rounding * a.cwiseAbs().maxCoeff();
+}
+
+bool alike(const ShaftElementConstants& a, const ShaftElementConstants& b) {
+  using Springs = Eigen::Array<double, 1, 1>;
+  return a.o1 == b.o1 && a.o2 == b.o2 && same(Springs(a.EA_l), Springs(b.EA_l)) &&
+         same(Springs(a.GJ_l), Springs(b.GJ_l)) && same(a.M4, b.M4) && same(a.G4, b.G4) &&
+         same(a.polar, b.polar);
+}
 
 /// Constants of the assembled elements, by their nodes.
 template <bool Offsets>
@@ -157,15 +191,21 @@ MeshError::MeshError(const model::Model& m, const meshes::Mesh& mesh, const Buil
       if (left_out_.empty() || left_out_.back() != shaft.name) left_out_.push_back(shaft.name);
       continue;
     }
-    Element x;
-    x.line = e.line;
-    x.node = node;
-    x.c = *found->second;
-    x.pieces = pieces.of(m, e);
-    x.K4 = elements::bending_stiffness(x.c);
-    for (std::size_t k = 0; k < parts; ++k)
-      x.piece_K4[k] = elements::bending_stiffness(x.pieces[k]);
-    elements_.push_back(x);
+    const Pieces::Set& set = pieces.of(m, e);
+    const ShaftElementConstants& c = *found->second;
+    if (pieces.made() || kinds_.empty() || !alike(kinds_.back().c, c)) add_kind(c, set);
+    elements_.push_back({e.line, node, kinds_.size() - 1});
+  }
+}
+
+void MeshError::add_kind(const ShaftElementConstants& c,
+                         std::span<const ShaftElementConstants> pieces) {
+  Kind& kind = kinds_.emplace_back();
+  kind.c = c;
+  kind.K4 = elements::bending_stiffness(c);
+  for (std::size_t k = 0; k < parts; ++k) {
+    kind.pieces[k] = pieces[k];
+    kind.piece_K4[k] = elements::bending_stiffness(pieces[k]);
   }
 }
 
@@ -175,8 +215,14 @@ MeshError& MeshError::operator=(MeshError&&) noexcept = default;
 
 Complex MeshError::defect(Complex lambda, const VecXc& x, std::span<const double> spin) const {
   Complex sum = 0;
-  for (const Element& e : elements_)
-    sum += e.defect(lambda, spin[static_cast<std::size_t>(e.line)], x);
+  const Element* last = nullptr;
+  Defects now;
+  for (const Element& e : elements_) {
+    if (!last || last->kind != e.kind || last->line != e.line)
+      now = kinds_[e.kind].defects(lambda, spin[static_cast<std::size_t>(e.line)]);
+    sum += e.defect(now, x);
+    last = &e;
+  }
   return sum;
 }
 

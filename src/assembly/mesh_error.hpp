@@ -16,6 +16,7 @@
 // Not judged: general sections, lines with bends (left_out()).
 #pragma once
 #include <assembly/build_system.hpp>
+#include <elements/shaft/shaft_constants.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,7 +38,12 @@ class MeshError {
   bool empty() const { return elements_.empty(); }
 
  private:
+  struct Kind;
+  struct Defects;
   struct Element;
+  void add_kind(const elements::ShaftElementConstants& c,
+                std::span<const elements::ShaftElementConstants> pieces);
+  std::vector<Kind> kinds_;
   std::vector<Element> elements_;
   std::vector<std::string> left_out_;
 };
