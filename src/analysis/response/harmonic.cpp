@@ -13,7 +13,7 @@ namespace {
 /// Size of a variation: differences of second order in it drop out by symmetry, third order is
 /// below rounding.
 double variation_step(const VecXc& a) {
-  const double largest = a.cwiseAbs().maxCoeff();
+  const double largest = std::sqrt(a.cwiseAbs2().maxCoeff());
   return largest > 0 ? 1e-7 / largest : 0.0;
 }
 
