@@ -111,8 +111,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
       q_(system.size()),
       v_(system.size()),
       a_(VecX::Zero(system.size())),
-      r_(system.size()),
-      part_(system.make_matrices()) {
+      r_(system.size()) {
   WHIRL_EXPECTS(std::all_of(running_.table_frequencies.begin(), running_.table_frequencies.end(),
                             [](double w) { return std::isfinite(w); }));
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
@@ -190,28 +189,16 @@ void SteadySystem::take_polynomials(const SteadySystem& other) {
   WHIRL_EXPECTS(&other.system_ == &system_);
   polynomial_ = other.polynomial_;
   seen_ = other.seen_;
-  scale_ = other.scale_;
-  polynomial_load_ = other.polynomial_load_;
   seen_speed_ = other.seen_speed_;
-  polynomial_q_ = other.polynomial_q_;
   seen_q_ = other.seen_q_;
-  polynomial_charts_ = other.polynomial_charts_;
-  p0_ = other.p0_;
-  p1_ = other.p1_;
-  k2_ = other.k2_;
-  r0_ = other.r0_;
-  r1_ = other.r1_;
-  r2_ = other.r2_;
-  f0_ = other.f0_;
-  f1_ = other.f1_;
-  f2_ = other.f2_;
 }
 
 void SteadySystem::set_load(double factor) {
   WHIRL_EXPECTS(std::isfinite(factor));
   if (workspace_.context.load != factor) {
     workspace_.context.load = factor;
-    polynomial_ = seen_ = false;
+    polynomial_.reset();
+    seen_ = false;
   }
 }
 
@@ -449,8 +436,8 @@ bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX&
 }
 
 bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const {
-  return polynomial_ && std::abs(Omega) <= 2.0 * scale_ && q == polynomial_q_ &&
-         f.chart == polynomial_charts_;
+  return polynomial_ && std::abs(Omega) <= 2.0 * polynomial_->scale && q == polynomial_->q &&
+         f.chart == polynomial_->charts;
 }
 
 namespace {
@@ -539,43 +526,50 @@ bool SteadySystem::smooth_tangent(const system::Frames& f, double Omega, const V
          add_mean_tangent(f, Omega, q, turning_smooth_, of_turning_smooth_, out);
 }
 
+la::MCK& SteadySystem::part() {
+  if (part_.M.value_count() == 0) part_ = system_.make_matrices();
+  return part_;
+}
+
 bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
   // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
   const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
-  if (p0_.M.value_count() == 0) {
-    p0_ = system_.make_matrices();
-    p1_ = system_.make_matrices();
-    k2_ = la::BlockMatrix<6>(system_.pattern());
-  }
-  for (VecX* r : {&r0_, &r1_, &r2_})
+  const auto made = std::make_shared<Polynomials>();
+  Polynomials& p = *made;
+  p.p0 = system_.make_matrices();
+  p.p1 = system_.make_matrices();
+  p.k2 = la::BlockMatrix<6>(system_.pattern());
+  for (VecX* r : {&p.r0, &p.r1, &p.r2})
     r->resize(q.size());
-  if (!smooth_tangent(f, s, q, p1_) || !smooth_residual(f, s, q, r1_)) return false;
-  if (!smooth_tangent(f, -s, q, part_) || !smooth_residual(f, -s, q, r2_)) return false;
-  if (!smooth_tangent(f, 0.0, q, p0_) || !smooth_residual(f, 0.0, q, r0_)) return false;
-  for (auto* x : {&f0_, &f1_, &f2_})
+  la::MCK& behind = part();
+  if (!smooth_tangent(f, s, q, p.p1) || !smooth_residual(f, s, q, p.r1)) return false;
+  if (!smooth_tangent(f, -s, q, behind) || !smooth_residual(f, -s, q, p.r2)) return false;
+  if (!smooth_tangent(f, 0.0, q, p.p0) || !smooth_residual(f, 0.0, q, p.r0)) return false;
+  for (auto* x : {&p.f0, &p.f1, &p.f2})
     x->assign(orders_.size(), VecXc::Zero(q.size()));
-  if (!add_forcing(f, s, q, turning_smooth_, f1_) || !add_forcing(f, -s, q, turning_smooth_, f2_) ||
-      !add_forcing(f, 0.0, q, turning_smooth_, f0_))
+  if (!add_forcing(f, s, q, turning_smooth_, p.f1) ||
+      !add_forcing(f, -s, q, turning_smooth_, p.f2) ||
+      !add_forcing(f, 0.0, q, turning_smooth_, p.f0))
     return false;
   for (std::size_t o = 0; o < orders_.size(); ++o) {
-    const VecXc plus = f1_[o], minus = f2_[o];
-    f1_[o] = (0.5 / s) * (plus - minus);
-    f2_[o] = (0.5 / (s * s)) * (plus + minus - 2.0 * f0_[o]);
+    const VecXc plus = p.f1[o], minus = p.f2[o];
+    p.f1[o] = (0.5 / s) * (plus - minus);
+    p.f2[o] = (0.5 / (s * s)) * (plus + minus - 2.0 * p.f0[o]);
   }
-  set_scaled(k2_, 0.5 / (s * s), p1_.K);
-  add_scaled(k2_, 0.5 / (s * s), part_.K);
-  add_scaled(k2_, -1.0 / (s * s), p0_.K);
-  for (auto [p, m] : {std::pair{&p1_.C, &part_.C}, std::pair{&p1_.K, &part_.K}}) {
-    set_scaled(*p, 0.5 / s, *p);
-    add_scaled(*p, -0.5 / s, *m);
+  set_scaled(p.k2, 0.5 / (s * s), p.p1.K);
+  add_scaled(p.k2, 0.5 / (s * s), behind.K);
+  add_scaled(p.k2, -1.0 / (s * s), p.p0.K);
+  for (auto [slope, m] : {std::pair{&p.p1.C, &behind.C}, std::pair{&p.p1.K, &behind.K}}) {
+    set_scaled(*slope, 0.5 / s, *slope);
+    add_scaled(*slope, -0.5 / s, *m);
   }
-  const VecX plus = r1_, minus = r2_;
-  r1_ = (0.5 / s) * (plus - minus);
-  r2_ = (0.5 / (s * s)) * (plus + minus - 2.0 * r0_);
-  polynomial_ = true;
-  scale_ = s;
-  polynomial_q_ = q;
-  polynomial_charts_ = f.chart;
+  const VecX plus = p.r1, minus = p.r2;
+  p.r1 = (0.5 / s) * (plus - minus);
+  p.r2 = (0.5 / (s * s)) * (plus + minus - 2.0 * p.r0);
+  p.scale = s;
+  p.q = q;
+  p.charts = f.chart;
+  polynomial_ = made;
   return true;
 }
 
@@ -590,7 +584,8 @@ void SteadySystem::relax(const system::Frames& f, double Omega, VecX& q) {
 bool SteadySystem::residual(const system::Frames& f, double Omega, const VecX& q, VecX& r) {
   r.resize(q.size());
   if (fits_polynomial(f, Omega, q)) {
-    r = r0_ + Omega * r1_ + (Omega * Omega) * r2_;
+    const Polynomials& p = *polynomial_;
+    r = p.r0 + Omega * p.r1 + (Omega * Omega) * p.r2;
   } else {
     if (!smooth_residual(f, Omega, q, r)) return false;
   }
@@ -632,19 +627,21 @@ bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const Ve
     seen_q_ = q;
   }
   if (fits_polynomial(f, Omega, q)) {
-    std::copy_n(p0_.M.data(), p0_.M.value_count(), out.M.data());
-    const Index n = static_cast<Index>(p0_.C.value_count());
-    Eigen::Map<VecX>(out.C.data(), n) =
-        Eigen::Map<const VecX>(p0_.C.data(), n) + Omega * Eigen::Map<const VecX>(p1_.C.data(), n);
-    Eigen::Map<VecX>(out.K.data(), n) = Eigen::Map<const VecX>(p0_.K.data(), n) +
-                                        Omega * Eigen::Map<const VecX>(p1_.K.data(), n) +
-                                        (Omega * Omega) * Eigen::Map<const VecX>(k2_.data(), n);
+    const Polynomials& p = *polynomial_;
+    const auto values = [](const la::BlockMatrix<6>& m) {
+      return Eigen::Map<const VecX>(m.data(), static_cast<Index>(m.value_count()));
+    };
+    const Index n = static_cast<Index>(p.p0.C.value_count());
+    std::copy_n(p.p0.M.data(), n, out.M.data());
+    Eigen::Map<VecX>(out.C.data(), n) = values(p.p0.C) + Omega * values(p.p1.C);
+    Eigen::Map<VecX>(out.K.data(), n) =
+        values(p.p0.K) + Omega * values(p.p1.K) + (Omega * Omega) * values(p.k2);
   } else if (!smooth_tangent(f, Omega, q, out)) {
     return false;
   }
   if (other_.size() > by_frequency_.size()) {
-    if (!evaluate_tangent(f, Omega, q, 0.0, part_, steady_)) return false;
-    add_scaled(out, 1.0, part_);
+    if (!evaluate_tangent(f, Omega, q, 0.0, part(), steady_)) return false;
+    add_scaled(out, 1.0, part());
   }
   return add_mean_tangent(f, Omega, q, turning_, of_turning_, out);
 }
@@ -655,7 +652,8 @@ bool SteadySystem::forcing(const system::Frames& f, double Omega, const VecX& q,
   const bool ready = fits_polynomial(f, Omega, q);
   for (std::size_t o = 0; o < orders_.size(); ++o) {
     if (ready)
-      out[o] = f0_[o] + Omega * f1_[o] + (Omega * Omega) * f2_[o];
+      out[o] =
+          polynomial_->f0[o] + Omega * polynomial_->f1[o] + (Omega * Omega) * polynomial_->f2[o];
     else
       out[o] = VecXc::Zero(q.size());
   }

@@ -18,6 +18,7 @@
 #include <system/system.hpp>
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -60,6 +61,9 @@ class SteadySystem {
   /// 1 where phi turns with the line.
   std::span<const unsigned char> spinning() const { return spinning_; }
   bool phase_dependent() const { return !turning_.empty() || !turning_smooth_.empty(); }
+  /// At one state forces and matrices are polynomials of second degree in the speed: no film, table or
+  /// contact asks for more.
+  bool quadratic_in_speed() const { return other_.empty() && turning_.empty(); }
   /// Distinct |ratio| > 0, ascending.
   std::span<const double> orders() const { return orders_; }
   /// +1 or -1: sign of the spin (at a positive reference speed) that whirl at a node is measured
@@ -133,6 +137,7 @@ class SteadySystem {
   bool smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   /// All but by_frequency_.
   bool fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  la::MCK& part();  ///< part_, made when it is first wanted
   bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
   void find_spinning();
@@ -176,15 +181,20 @@ class SteadySystem {
   std::array<double, 4> fixed_whirl_{};  ///< rate of hysteretic damping
   VecX fixed_q_;
   std::vector<Mat3> fixed_charts_;
-  // smooth terms as polynomials at one q
-  bool polynomial_ = false, seen_ = false;
-  double scale_ = 0, polynomial_load_ = 1, seen_speed_ = 0;
-  VecX polynomial_q_, seen_q_;
-  std::vector<Mat3> polynomial_charts_;
-  la::MCK p0_, p1_;        ///< constant part; slopes of C and K
-  la::BlockMatrix<6> k2_;  ///< curvature of K
-  VecX r0_, r1_, r2_;
-  std::vector<VecXc> f0_, f1_, f2_;  ///< forcing
+  /// Smooth terms as polynomials in the speed, at one q.
+  struct Polynomials {
+    double scale = 0;  ///< rad/s, of the speeds they were made from
+    VecX q;
+    std::vector<Mat3> charts;
+    la::MCK p0, p1;         ///< constant part; slopes of C and K
+    la::BlockMatrix<6> k2;  ///< curvature of K
+    VecX r0, r1, r2;
+    std::vector<VecXc> f0, f1, f2;  ///< forcing
+  };
+  std::shared_ptr<const Polynomials> polynomial_;  ///< null: there are none
+  bool seen_ = false;
+  double seen_speed_ = 0;
+  VecX seen_q_;
 };
 
 /// Sign of the spin that whirl at each node is measured against, +1 or -1, one a node, at a

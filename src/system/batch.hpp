@@ -21,7 +21,8 @@ struct Workspace {
   std::vector<Mat32> D, D_rate, D_accel;     ///< node Jacobians in global axes
   std::vector<rotation::Director> director;  ///< in chart axes
   std::vector<Vector<7>> force;              ///< X-space force of every node
-  la::BlockMatrix<7> M, C, K;                ///< X-space tangents
+  la::BlockMatrix<7> M, C,
+      K;                ///< X-space tangents; empty until they are wanted (System::make_tangents)
   VecX q, v, a, loads;  ///< with the places of followers, where there are any (joints.hpp)
   Context context;
   Index outside = -1;        ///< node that left the chart (|gamma| >= pi), or -1

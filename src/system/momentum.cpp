@@ -74,6 +74,7 @@ std::string MomentumProblem::obstacle(const System& system) {
   if (!found.empty()) return found;
   // Mass in anything else shows in its tangent.
   Workspace w = system.make_workspace();
+  system.make_tangents(w);
   const State s = system.make_state();
   VecX q = s.q, v = s.v, a = s.a;
   system.impose(s.frames, 0.0, q, v, a);

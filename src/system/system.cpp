@@ -286,14 +286,16 @@ Workspace System::make_workspace() const {
   w.D_accel.resize(n);
   w.director.resize(n);
   w.force.resize(n);
-  w.M = la::BlockMatrix<7>(*pattern_);
-  w.C = la::BlockMatrix<7>(*pattern_);
-  w.K = la::BlockMatrix<7>(*pattern_);
   w.kept = kept_;
   if (!kept_.empty())
     for (NodeState& node : w.nodes)
       node.kept = w.kept.data();
   return w;
+}
+
+void System::make_tangents(Workspace& w) const {
+  for (la::BlockMatrix<7>* m : {&w.M, &w.C, &w.K})
+    if (m->value_count() == 0) *m = la::BlockMatrix<7>(*pattern_);
 }
 
 void System::settle_kept(const Workspace& w, std::vector<double>& values) const {
@@ -521,6 +523,7 @@ bool System::tangent_blocks(Workspace& w, const Frames& f, double t, Eigen::Ref<
     evaluate_jacobians(w, w.q, w.v, w.a, where.nodes);
   for (const Index i : where.nodes)
     w.force[at(i)].setZero();
+  make_tangents(w);
   for (la::BlockMatrix<7>* m : {&w.M, &w.C, &w.K})
     for (const Index s : where.slots)
       m->block(s).setZero();

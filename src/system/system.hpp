@@ -126,6 +126,8 @@ class System {
 
   State make_state() const;
   Workspace make_workspace() const;
+  /// Workspaces that only look at nodes and forces have no matrices; tangent() makes them.
+  void make_tangents(Workspace& w) const;
   la::MCK make_matrices() const { return la::MCK(*pattern_); }
 
   /// Sets held entries of q, v, a at time t, and those of followers. phi laws are reduced by the

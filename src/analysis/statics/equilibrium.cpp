@@ -56,7 +56,6 @@ EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions o
     : running_(running),
       options_(options),
       free_(running.system().active().begin(), running.system().active().end()),
-      matrices_(running.system().make_matrices()),
       r_(running.system().size()) {
   const system::System& s = running.system();
   Vec3 low = Vec3::Constant(infinity), high = -low;
@@ -80,6 +79,10 @@ void EquilibriumSolver::find_axial_holds() {
     axial_holds_.push_back(6 * first + system::ux);
     free_[at(axial_holds_.back())] = 0;
   }
+}
+
+void EquilibriumSolver::make_matrices() {
+  if (matrices_.M.value_count() == 0) matrices_ = running_.system().make_matrices();
 }
 
 struct EquilibriumSolver::SpinMotions {
@@ -154,6 +157,7 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
   // What sees phi (weight on an unbalance) holds it in no useful sense and is left out.
   const system::System& sys = running_.system();
   const Index L = sys.lines();
+  make_matrices();
   if (!running_.blind_tangent(s.frames, Omega, s.q, matrices_)) return;
   SpinMotions motions = spin_motions();
   // Lines whose torques meet (gears, couplings) are one rotor.
@@ -356,6 +360,7 @@ bool EquilibriumSolver::settle(double Omega, system::State& s) {
 EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s,
                                                      int& iterations, Step kind) {
   const system::System& sys = running_.system();
+  make_matrices();
   if (!solver_) solver_ = la::make_direct_solver<double>(sys.pattern(), free_, options_.solver);
   if (!running_.residual(s.frames, Omega, s.q, r_)) {
     why_ = "the state lies outside the range of an element or of the tilt (pi)";

@@ -74,6 +74,8 @@ class EquilibriumSolver {
   enum class Outcome { converged, singular, diverged };
   /// Of each line, the motion in which it turns.
   struct SpinMotions;
+  /// matrices_, when they are first wanted: copies that are given their equilibria need none.
+  void make_matrices();
   void find_axial_holds();
   void find_spin_holds(const system::State& s, double Omega);
   void find_holds_once(const system::State& s, double Omega);
