@@ -94,7 +94,8 @@ void refine_at_criticals(results::FrequencyStep& s, analysis::Motion motion, Dri
   // they only say where the grid is to be finer: found, not counted, and where modes cannot be
   // followed the tracker goes in smaller steps
   o.certify = false;
-  o.grid = 8;
+  constexpr Index smooth = 4, any = 8;  // coefficients of supports may bend lines of frequencies
+  o.grid = s.linear.running().quadratic_in_speed() ? smooth : any;
   o.threads = s.job.options.jobs;
   std::vector<double> places;
   try {
