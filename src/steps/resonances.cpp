@@ -96,6 +96,7 @@ void refine_at_criticals(results::FrequencyStep& s, analysis::Motion motion, Dri
   o.certify = false;
   constexpr Index smooth = 4, any = 8;  // coefficients of supports may bend lines of frequencies
   o.grid = s.linear.running().quadratic_in_speed() ? smooth : any;
+  o.tolerance = 1e-9;  // of the last step of a secant: the place is right to its square
   o.threads = s.job.options.jobs;
   std::vector<double> places;
   try {
