@@ -1,15 +1,18 @@
-// What a step costs as physics is absent, and what the program costs before and after the first
-// step. Prints a Markdown table:
+// What a step costs as physics is absent, what the program costs before and after the first step,
+// and what a run of a sweep costs beyond its analysis. Prints Markdown tables:
 //   build/bin/bench_scenes build/bin/whirl .
 #include <run/job.hpp>
 #include <deck/deck.hpp>
+#include <steps/steps.hpp>
 #include <steps/transient_step.hpp>
+#include <core/stopwatch.hpp>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -97,6 +100,70 @@ Process measured(const std::vector<std::string>& arguments, int repeats) {
     best.megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
   }
   return best;
+}
+
+/// A shaft with a disk in its middle, on two linear bearings: elements on either side, the step.
+fs::path write_rotor(const char* name, int half, const std::string& step) {
+  const std::string ends =
+      "type = 'linear'\nkyy = '1e7 N/m'\nkzz = '8e6 N/m'\ncyy = '500 N.s/m'\nczz = '500 N.s/m'\n";
+  const fs::path file = scratch() / name;
+  std::ofstream(file)
+      << "format = 1\n[model]\ngravity = '9.81 m/s^2'\ngravity_direction = '-y'\n"
+      << "[[material]]\nname = 'own'\nE = '210 GPa'\nnu = 0.3\ndensity = '7850 kg/m^3'\n"
+      << "[shaft]\nmaterial = 'own'\ncolumns = ['name', 'length[mm]', 'od[mm]', 'min_elements']\n"
+      << fmt::format("rows = [['left', 750, 50, {0}], ['right', 750, 50, {0}]]\n", half)
+      << "[[disk]]\nname = 'disk'\nat = 'left:end'\nmass = '30 kg'\nIp = '0.3 kg.m^2'\n"
+      << "Id = '0.15 kg.m^2'\n[[unbalance]]\nat = 'disk'\namount = '300 g.mm'\n"
+      << "[[bearing]]\nname = 'driven'\nat = 'left:start'\nkxx = '1e7 N/m'\ncxx = '10 N.s/m'\n"
+      << ends << "[[bearing]]\nname = 'free'\nat = 'right:end'\n"
+      << ends << "[[probe]]\nname = 'disk'\nat = 'disk'\n"
+      << "[[drive]]\nname = 'motor'\nat = 'left:start'\ntype = 'speed'\nspeed = '3000 rpm'\n"
+      << "[[step]]\nname = 'step'\n"
+      << step;
+  return file;
+}
+
+/// CPU time of the steps of a model alone, s: the median of many in a process that is warm.
+double steps_alone(const model::Model& m, const std::string& table) {
+  run::RunOptions options;
+  options.quiet = true;
+  options.jobs = 1;
+  options.only_files = {table};
+  std::vector<double> seconds;
+  for (int k = 0; k < 300; ++k) {
+    fs::remove_all(scratch() / "alone");
+    const Stopwatch watch;
+    run::Job job(m, options, scratch() / "alone");
+    steps::run_steps(job);
+    seconds.push_back(watch.elapsed().cpu);
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + 150, seconds.end());
+  return seconds[150];
+}
+
+/// What many short runs cost beyond their analyses.
+void print_sweep(const std::string& whirl) {
+  const fs::path deck = write_rotor("modal.toml", 10, "type = 'modal'\nspeed = '3000 rpm'\n");
+  constexpr int runs = 2000;
+  deck::ReadOptions tables;
+  tables.set = {"output.report=false", "output.vtk=[]"};
+  const double alone = steps_alone(deck::load_model(deck, tables), "step_modes.csv");
+  std::printf(
+      "\n`whirl sweep`, %d runs of a modal step of 20 elements, whose steps alone take %.2f ms of "
+      "CPU time each:\n\n"
+      "| processes | wall, s | CPU a run, ms | analyses / (wall x processes), %% "
+      "|\n|---|---|---|---|\n",
+      runs, 1e3 * alone);
+  for (const int jobs : {1, 2}) {
+    fs::remove_all(scratch() / "sweep");
+    const Process p = measured(
+        {whirl, "sweep", deck.string(), "--quiet", "--vary",
+         fmt::format("disk.disk.mass=20kg:40kg:{}", runs), "--response", "f=step_modes:frequency:1",
+         "--jobs", std::to_string(jobs), "--output", (scratch() / "sweep").string()},
+        1);
+    std::printf("| %d | %.2f | %.2f | %.0f |\n", jobs, p.wall, 1e3 * p.cpu / runs,
+                100.0 * alone * runs / (p.wall * jobs));
+  }
 }
 
 }  // namespace
@@ -194,6 +261,23 @@ int main(int argc, char** argv) {
   process(
       "`whirl run`, example 30: static",
       {"run", (source / "examples/30_static_sag/deck.toml").string(), "--quiet", "--output", out});
+  const std::vector<std::string> alone{
+      "--quiet",  "--jobs", "1", "--set", "output.csv=false", "--set", "output.report=false",
+      "--output", out};
+  const auto by_itself = [&](const char* what, const fs::path& deck) {
+    std::vector<std::string> arguments{"run", deck.string()};
+    arguments.insert(arguments.end(), alone.begin(), alone.end());
+    process(what, arguments);
+  };
+  by_itself("`linear = true`, 50 elements, 1000 steps of 1 ms by Gauss 6, no outputs",
+            write_rotor("linear.toml", 25,
+                        "type = 'transient'\nlinear = true\nstart = 'static'\nduration = '1 s'\n"
+                        "integrator = { method = 'gauss6', dt = '1 ms' }\n"));
+  by_itself("`unbalance_response`, 400 elements, 250 speeds and more at peaks, no outputs",
+            write_rotor("unbalance.toml", 200,
+                        "type = 'unbalance_response'\n"
+                        "speed = { start = '100 rpm', stop = '12000 rpm', points = 250 }\n"));
+  print_sweep(argv[1]);
   std::printf("\nThe program: %.1f MB.\n", static_cast<double>(fs::file_size(argv[1])) / 1048576.0);
   fs::remove_all(scratch());
   return 0;
