@@ -163,6 +163,7 @@ std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double
   analysis::ModesOptions options;
   options.judge = may_grow(linear.system(), linear.at(speed));
   options.count = most;
+  options.guard = 0;
   if (!options.judge) {
     const la::MCK& conservative = linear.conservative_at(speed);
     const Index below = modes_below(linear.system(), conservative, highest, most);

@@ -76,12 +76,13 @@ PeakError peak_error(double at, double amplification, const std::function<double
                      const std::function<double(double)>& refined) {
   // half its height so near to it: nothing damps it, and it has no height
   constexpr double sharpest = 1e-6;
-  if (own(at * (1.0 + sharpest)) < 0.5 * own(at)) return {};
+  const double height = own(at);
+  if (own(at * (1.0 + sharpest)) < 0.5 * height) return {};
   const double half = distance_of_places(std::abs(at), at, amplification, own);
   const std::array<double, 3> places{at - half, at, at + half};
   std::array<double, 3> here{}, there{};
   for (std::size_t k = 0; k < 3; ++k) {
-    here[k] = own(places[k]);
+    here[k] = k == 1 ? height : own(places[k]);
     there[k] = refined(places[k]);
   }
   PeakError e;

@@ -29,6 +29,7 @@ la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
   l.count = o.count > 0 && hysteretic
                 ? o.count + 2
                 : o.count;  // partners of modes that hysteretic damping will tell apart
+  l.guard = o.guard;
   l.max_frequency = o.max_frequency;
   l.real_roots = o.real_roots;
   l.growing = o.judge;

@@ -15,6 +15,7 @@ namespace whirl::analysis {
 struct ModesOptions {
   Index count = 12;                 ///< modes of least frequency
   double max_frequency = infinity;  ///< rad/s; with count = 0: all modes up to it
+  Index guard = 2;  ///< modes sought beyond count, so that the next speed of a series loses none
   Motion motion = Motion::all;
   bool damped = true;       ///< false: conservative part of the matrices only
   bool real_roots = false;  ///< also motions that do not oscillate
