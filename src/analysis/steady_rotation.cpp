@@ -316,18 +316,22 @@ void SteadySystem::sort_terms() {
     turning_smooth_.clear();
   }
   of_turning_smooth_ = system_.blocks_of(turning_smooth_);
-  of_turning_ = system_.blocks_of(turning_);
-  set_apart_frequency_terms();
+  set_apart_asked_terms();
 }
 
-void SteadySystem::set_apart_frequency_terms() {
-  const auto follows_frequency = [this](std::size_t k) {
-    return running_.frequency_dependent() &&
-           system_.terms()[k]->depends(workspace_.context).frequency;
+void SteadySystem::set_apart_asked_terms() {
+  const auto place = [this](std::size_t k, Terms& asked, Terms& rated, Terms& steady) {
+    const system::Dependence d = system_.terms()[k]->depends(workspace_.context);
+    const bool by_frequency = running_.frequency_dependent() && d.frequency;
+    (by_frequency ? asked : d.rate ? rated : steady).push_back(k);
   };
   for (const std::size_t k : other_)
-    (follows_frequency(k) ? by_frequency_ : steady_).push_back(k);
-  turning_by_frequency_ = std::any_of(turning_.begin(), turning_.end(), follows_frequency);
+    place(k, asked_, rated_, steady_);
+  for (const std::size_t k : turning_)
+    place(k, turning_asked_, turning_rated_, turning_steady_);
+  of_turning_asked_ = system_.blocks_of(turning_asked_);
+  of_turning_rated_ = system_.blocks_of(turning_rated_);
+  of_turning_steady_ = system_.blocks_of(turning_steady_);
 }
 
 void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
@@ -597,22 +601,96 @@ bool SteadySystem::residual(const system::Frames& f, double Omega, const VecX& q
 }
 
 bool SteadySystem::tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
-  if (by_frequency_.empty()) return fixed_tangent(f, Omega, q, out);
+  const bool by_rate = !rated_.empty() || !turning_rated_.empty();
+  if (asked_.empty() && turning_asked_.empty() && !by_rate) return fixed_tangent(f, Omega, q, out);
   const system::Context& c = workspace_.context;
-  const std::array<double, 4> whirl{c.whirl, c.growth, c.whirl_side, c.whirl_rotates ? 1.0 : 0.0};
-  if (!have_fixed_ || turning_by_frequency_ || fixed_speed_ != Omega || fixed_load_ != c.load ||
-      fixed_whirl_ != whirl || fixed_q_ != q || fixed_charts_ != f.chart) {
+  if (!have_fixed_ || fixed_speed_ != Omega || fixed_load_ != c.load || fixed_q_ != q ||
+      fixed_charts_ != f.chart) {
     if (fixed_.M.value_count() == 0) fixed_ = system_.make_matrices();
     have_fixed_ = fixed_tangent(f, Omega, q, fixed_);
     if (!have_fixed_) return false;
     fixed_speed_ = Omega;
     fixed_load_ = c.load;
-    fixed_whirl_ = whirl;
     fixed_q_ = q;
     fixed_charts_ = f.chart;
   }
-  if (!evaluate_tangent(f, Omega, q, 0.0, out, by_frequency_)) return false;
+  if (!evaluate_tangent(f, Omega, q, 0.0, out, asked_)) return false;
   add_scaled(out, 1.0, fixed_);
+  if (!add_mean_tangent(f, Omega, q, turning_asked_, of_turning_asked_, out)) return false;
+  return !by_rate || add_rated(f, Omega, q, out);
+}
+
+bool SteadySystem::rated_tangent(const system::Frames& f, double Omega, const VecX& q,
+                                 la::MCK& out) {
+  return evaluate_tangent(f, Omega, q, 0.0, out, rated_) &&
+         add_mean_tangent(f, Omega, q, turning_rated_, of_turning_rated_, out);
+}
+
+/// Where the side of the motion stands to the spin of each line: +1 faster, -1 slower, 0 as fast.
+std::vector<int> SteadySystem::sides(double Omega) const {
+  constexpr double same = 1e-12;
+  const double side = workspace_.context.whirl_side;
+  std::vector<int> out;
+  for (const double ratio : ratio_) {
+    const double spin = std::abs(ratio * Omega);
+    out.push_back(std::abs(side - spin) <= same * spin ? 0 : side > spin ? 1 : -1);
+  }
+  return out;
+}
+
+bool SteadySystem::add_rated(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+  const system::Context& c = workspace_.context;
+  if (c.whirl == 0.0 || std::isinf(c.whirl)) {
+    if (!rated_tangent(f, Omega, q, part())) return false;
+    add_scaled(out, 1.0, part());
+    return true;
+  }
+  std::vector<int> side = sides(Omega);
+  if (!rates_ || rates_->Omega != Omega || rates_->load != c.load || rates_->q != q ||
+      rates_->rotates != c.whirl_rotates || rates_->sides != side || rates_->charts != f.chart) {
+    if (!make_rated(f, Omega, q)) return false;
+    rates_->sides = std::move(side);
+  }
+  add_scaled(out, 1.0, rates_->base);
+  add_scaled(out, 1.0 / c.whirl, rates_->by_whirl);
+  add_scaled(out, c.growth / c.whirl, rates_->by_growth);
+  return true;
+}
+
+bool SteadySystem::make_rated(const system::Frames& f, double Omega, const VecX& q) {
+  system::Context& c = workspace_.context;
+  const double whirl = c.whirl, growth = c.growth;
+  if (!rates_) {
+    rates_ = std::make_unique<Rated>();
+    for (la::MCK* m : {&rates_->base, &rates_->by_whirl, &rates_->by_growth})
+      *m = system_.make_matrices();
+  }
+  Rated& r = *rates_;
+  r.Omega = nan;  // until it is whole
+  // base + by_whirl/w + by_growth g/w, at (w, 0), (2w, 0) and (w, w)
+  c.growth = 0.0;
+  bool inside = rated_tangent(f, Omega, q, r.base);
+  c.whirl = 2.0 * whirl;
+  inside = inside && rated_tangent(f, Omega, q, r.by_whirl);
+  c.whirl = c.growth = whirl;
+  inside = inside && rated_tangent(f, Omega, q, r.by_growth);
+  c.whirl = whirl;
+  c.growth = growth;
+  if (!inside) return false;
+  for (const auto part : {&la::MCK::M, &la::MCK::C, &la::MCK::K}) {
+    const auto values = [part](la::MCK& m) {
+      return Eigen::Map<VecX>((m.*part).data(), static_cast<Index>((m.*part).value_count()));
+    };
+    auto base = values(r.base), by_whirl = values(r.by_whirl), by_growth = values(r.by_growth);
+    by_growth -= base;
+    by_whirl = 2.0 * whirl * (base - by_whirl);
+    base -= by_whirl / whirl;
+  }
+  r.Omega = Omega;
+  r.load = c.load;
+  r.rotates = c.whirl_rotates;
+  r.q = q;
+  r.charts = f.chart;
   return true;
 }
 
@@ -639,11 +717,11 @@ bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const Ve
   } else if (!smooth_tangent(f, Omega, q, out)) {
     return false;
   }
-  if (other_.size() > by_frequency_.size()) {
+  if (!steady_.empty()) {
     if (!evaluate_tangent(f, Omega, q, 0.0, part(), steady_)) return false;
     add_scaled(out, 1.0, part());
   }
-  return add_mean_tangent(f, Omega, q, turning_, of_turning_, out);
+  return add_mean_tangent(f, Omega, q, turning_steady_, of_turning_steady_, out);
 }
 
 bool SteadySystem::forcing(const system::Frames& f, double Omega, const VecX& q,

@@ -135,14 +135,20 @@ class SteadySystem {
                    std::vector<VecXc>& out);
   bool smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
   bool smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
-  /// All but by_frequency_.
+  /// All but what is asked_.
   bool fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  /// What depends on the rate of a small motion alone, as it is evaluated.
+  bool rated_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  /// The same, by what is kept of it.
+  bool add_rated(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  bool make_rated(const system::Frames& f, double Omega, const VecX& q);
+  std::vector<int> sides(double Omega) const;
   la::MCK& part();  ///< part_, made when it is first wanted
   bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
   void find_spinning();
   void sort_terms();
-  void set_apart_frequency_terms();
+  void set_apart_asked_terms();
   /// Multiples of the angle that the terms declare, at least 2.
   Index most_harmonics() const;
   void make_samples();
@@ -160,12 +166,27 @@ class SteadySystem {
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;
-  system::System::Blocks of_turning_smooth_, of_turning_;  ///< where their tangents stand
-  Terms by_frequency_, steady_;        ///< of other_: those that answer differently to motions of
-                                       ///< different frequency; the rest
-  bool turning_by_frequency_ = false;  ///< some of turning_ do too
-  std::vector<double> theta_;          ///< samples
-  MatX weights_;  ///< rows: mean, then cos and sin of each order; columns: samples
+  /// Of other_ and of turning_: those that answer differently to motions of another frequency or rate
+  /// (tables, hysteretic damping); the rest.
+  Terms asked_, steady_, turning_asked_, turning_steady_;
+  /// Those on the rate alone.
+  Terms rated_, turning_rated_;
+  /// Where the tangents of what turns stand.
+  system::System::Blocks of_turning_smooth_, of_turning_asked_, of_turning_rated_,
+      of_turning_steady_;
+  /// Tangents that depend on the rate alone, as they do: base + by_whirl/w + by_growth g/w for a motion
+  /// exp((g + iw) t), while it stays on its side of the spin of every line.
+  struct Rated {
+    double Omega = nan, load = nan;
+    bool rotates = false;
+    std::vector<int> sides;
+    VecX q;
+    std::vector<Mat3> charts;
+    la::MCK base, by_whirl, by_growth;
+  };
+  std::unique_ptr<Rated> rates_;
+  std::vector<double> theta_;  ///< samples
+  MatX weights_;               ///< rows: mean, then cos and sin of each order; columns: samples
   bool hysteretic_ = false;
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;  // scratch
@@ -173,12 +194,10 @@ class SteadySystem {
   // Of means: the sum over the samples, and of what they are without signs; of tangents M, C, K one
   // after another, block after block
   VecX mean_, size_, mean_r_, size_r_;
-  // What does not depend on the frequency asked about, kept while the state stays: supports
-  // tabulated against it alone are evaluated again
+  // What depends on neither the frequency nor the rate asked about, kept while the state stays
   la::MCK fixed_;
   bool have_fixed_ = false;
   double fixed_speed_ = 0, fixed_load_ = 1;
-  std::array<double, 4> fixed_whirl_{};  ///< rate of hysteretic damping
   VecX fixed_q_;
   std::vector<Mat3> fixed_charts_;
   /// Smooth terms as polynomials in the speed, at one q.

@@ -50,11 +50,13 @@ struct Dependence {
   SeenAngle angle{};
   bool spin = false;       ///< on phi'
   bool frequency = false;  ///< on Context::frequency
-  bool rate = false;       ///< tangents: on the rate of a small motion, Context::whirl and growth
-  bool time = false;       ///< on Context::time
-  bool weight = false;     ///< on a common acceleration of its nodes and Context::gravity
-  int harmonics = 2;       ///< of what turns: multiples of the angle in the force, beyond which
-                           ///< little is left
+  bool rate =
+      false;  ///< tangents: on the rate of a small motion, Context::whirl w and growth g, as
+              ///< a + b/w + c g/w while Context::whirl_side stays on its side of each spin
+  bool time = false;    ///< on Context::time
+  bool weight = false;  ///< on a common acceleration of its nodes and Context::gravity
+  int harmonics = 2;    ///< of what turns: multiples of the angle in the force, beyond which
+                        ///< little is left
 
   /// What both depend on together.
   friend constexpr Dependence operator|(const Dependence& a, const Dependence& b) {
