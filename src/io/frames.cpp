@@ -59,6 +59,7 @@ class Collection {
     const bool earlier = there && read_text(pvd_).starts_with(pvd_head);
     if (there && !earlier) io_failure(pvd_, "no list of frames of an earlier run:");
     if (next_ == 0 && keep_until > -infinity && earlier) recover(keep_until);
+    remove_unfinished_lists();
     write_list();          // before files go: the list never names a missing one
     if (!earlier) return;  // no run made frames here: whatever is in the folder is somebody else's
     std::unordered_set<std::string> listed;
@@ -113,6 +114,19 @@ class Collection {
     const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
     const std::string_view rest = name.substr(digits);
     return digits >= 6 && (part ? rest.starts_with(".vtp.") : rest == ".vtp");
+  }
+
+  /// What a run that was killed was writing of its list: .run_up_line.pvd.4711.0.part
+  void remove_unfinished_lists() const {
+    const std::string begin = "." + pvd_.filename().string() + ".";
+    std::error_code ec;
+    std::vector<fs::path> parts;
+    for (const auto& f : fs::directory_iterator(pvd_.parent_path(), ec)) {
+      const std::string name = f.path().filename().string();
+      if (name.starts_with(begin) && name.ends_with(".part")) parts.push_back(f.path());
+    }
+    for (const auto& f : parts)
+      fs::remove(f, ec);
   }
 
   void recover(double keep_until) {
