@@ -420,7 +420,8 @@ class BandSearch {
     for (la::Mode x : modes) {
       if (!is_motion(x)) continue;
       settle(Omega, x);
-      if (x.lambda.real() > best.rate) best = growth_of(x);
+      constexpr double rounding = 1e-12;  // of several that nothing damps the slowest
+      if (x.lambda.real() > best.rate + rounding * std::abs(x.lambda)) best = growth_of(x);
     }
     return best;
   }
