@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Runs an example deck through the program and compares numbers of its summary.
 #   run_example.sh WHIRL DECK [KEY EXPECTED RELATIVE_TOLERANCE]...
-# KEY: first occurrence in summary.json counts. Also: the results that must be there are there, and the
-# figures can be read.
+# KEY: first occurrence in summary.json counts. Also: the results that must be there are there, the
+# figures can be read, and nothing that is written differs from what was approved (tests/approved).
 set -u
 whirl=$1 deck=$2; shift 2
 dir=$(mktemp -d); trap 'rm -rf "$dir"' EXIT
 cd "$dir" || exit 1
-"$whirl" run "$deck" --quiet || { echo "exit code $?"; exit 1; }
+"$whirl" run "$deck" >log 2>&1 || { echo "exit code $?"; cat log; exit 1; }
 results=$(echo results/*)
 for f in summary.json resolved.toml report.html run.json; do
   [ -s "$results/$f" ] || { echo "missing: $f"; exit 1; }
@@ -22,6 +22,11 @@ fi
 # figures as a reader sees them: nothing leaves its axes, no text stands on another
 if command -v python3 >/dev/null && [ -d "$results/plots" ]; then
   python3 "$(dirname "$0")/check_figures.py" "$results/plots" || bad=1
+fi
+# and what it writes is what was approved
+approved=$(dirname "$0")/../approved/$(basename "$(dirname "$deck")").txt
+if command -v python3 >/dev/null; then
+  python3 "$(dirname "$approved")/approved.py" "$results" log "$approved" || bad=1
 fi
 while [ $# -ge 3 ]; do
   value=$(grep -F -m1 "\"$1\":" "$results/summary.json" | sed -E 's/.*": ([-+0-9.eE]+).*/\1/')
