@@ -120,7 +120,8 @@ TEST(NegativeSpeeds, GrowthIsLookedForAtTheFastestSpeed) {
     std::string text = rotor("[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { " +
                              speeds + ", points = 12 }\n");
     const std::string material = "material = \"steel\"\n";
-    return text.insert(text.find(material) + material.size(), "damping = { internal_beta = \"2e-3 s\" }\n");
+    return text.insert(text.find(material) + material.size(),
+                       "damping = { internal_beta = \"2e-3 s\" }\n");
   };
   const DeckRun forth(damped("start = \"100 rpm\", stop = \"20000 rpm\"")),
       back(damped("start = \"-20000 rpm\", stop = \"-100 rpm\""));
