@@ -325,7 +325,8 @@ def read(path):
 
 
 def rounded(feature):
-    return [float(f"{v:.5g}") if isinstance(v, float) else v for v in feature]
+    digits = {"text": 8, "points": 6}.get(feature[0], 5)
+    return [float(f"{v:.{digits}g}") if isinstance(v, float) else v for v in feature]
 
 
 def text_of(feature):
