@@ -24,6 +24,8 @@ double ModeSolver::Impl::count_radius() const {
   if (opt.count <= 0) return std::max(1.01 * opt.max_frequency, least_radius);
   const Index found = static_cast<Index>(f.size());
   double radius = found > 0 ? 1.1 * f.back() : 4.0 * sigma;
+  for (const Pair& p : known)  // where nothing oscillates what decays is all there is to list
+    if (found == 0 && !p.rigid) radius = std::max(radius, 1.01 * std::abs(p.lambda));
   double widest = 0.0;
   for (Index i = opt.count; i < found; ++i) {
     const double low = f[at(i - 1)], high = f[at(i)];
@@ -281,11 +283,17 @@ void ModeSolver::Impl::certify() {
     if (c.unknown <= 0) break;
     if (avoid_crowd(c, radius)) continue;
     certificate.where = counter->locate(c.unknown);
+    bool any = false;
     if (further_copies(certificate.where)) {
+      constexpr Index few = 2;  // more are a crowd, which nobody looks at
+      if (c.unknown <= few)
+        for (const Complex place : certificate.where)
+          any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;
+      if (any) continue;
       certificate.missing = 0;
       break;
     }
-    bool any = c.unknown > few_missing && dimension() <= dense_recovery && solve_dense(&region);
+    any = c.unknown > few_missing && dimension() <= dense_recovery && solve_dense(&region);
     if (!any)
       for (const Complex place : certificate.where)
         any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;

@@ -238,7 +238,8 @@ def of_frame(path):
 
 
 def of_log(path):
-    lines = [re.sub(r", [\d.e-]+ s CPU.*", "", line) for line in Path(path).read_text(encoding="utf-8").splitlines()
+    place = re.compile(r"\S*/([\w.-]+\.(?:toml|csv))")
+    lines = [place.sub(r"\1", re.sub(r", [\d.e-]+ s CPU.*", "", line)) for line in Path(path).read_text(encoding="utf-8").splitlines()
              if not re.search(r"^results: | \d+ %  ", line)]
     return {f"line {i}": of_text(line) for i, line in enumerate(lines)}
 
