@@ -248,6 +248,7 @@ void run_in_workers(std::span<const std::int64_t> tasks, const WorkerOptions& op
     if (std::none_of(workers.begin(), workers.end(), [](const Worker& w) { return w.busy(); }))
       return;
     std::vector<pollfd> wait;
+    wait.reserve(workers.size());
     for (const Worker& w : workers)
       wait.push_back({w.answers(), POLLIN, 0});
     if (::poll(wait.data(), wait.size(), 100) < 0 && errno != EINTR) return;
