@@ -311,7 +311,7 @@ def differences(want, got):
         return f"{got[1]} points for {want[1]}"
     names = ("", "", "mean x", "mean y", "rms x", "rms y", "order")
     few = 0.05 if want[1] == got[1] else 1.0
-    return ", ".join(f"{names[k]} {got[k]:.6g} px for {want[k]:.6g}" for k in range(2, 7) if abs(want[k] - got[k]) > few)
+    return ", ".join(f"{names[k]} {got[k]:.6g} px for {want[k]:.6g}" for k in range(2, 7) if abs(want[k] - got[k]) > few * (3 if k == 6 else 1))
 
 
 def read(path):
