@@ -4,7 +4,6 @@
 #include <core/dual.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace whirl::elements {
@@ -12,11 +11,6 @@ namespace whirl::elements {
 namespace {
 
 Vec2 outward(double a) { return Vec2(std::cos(a), std::sin(a)); }
-
-std::uint64_t next_number() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
-}
 
 /// Of a cell with m/h - 1 = x: its pressure, and the share that the journal carries on, which grows
 /// no further once the bubbles are gone; with slopes.
@@ -78,9 +72,7 @@ FlowFactors<T> factors_at(const FiniteJournal& f, const T& slip, const T& gap) {
 
 }  // namespace
 
-CarriedPad::CarriedPad(const FiniteJournal& film, std::size_t k)
-    : film_(film),
-      number_(next_number()) {
+CarriedPad::CarriedPad(const FiniteJournal& film, std::size_t k) : film_(film) {
   WHIRL_EXPECTS(film.surface && k < film.surface->arcs().size());
   WHIRL_EXPECTS(film.mass_conserving && film.kept_from < 0);
   const JournalSurface::Arc& arc = film.surface->arcs()[k];
@@ -191,9 +183,8 @@ template CarriedPad::Cell<Dual<6>> CarriedPad::cell(Index, const Dual<6>&, const
                                                     const Dual<6>&) const;
 
 /// Newton's method for (m - old) rate + outflow = 0, by smaller steps where the corners catch it.
-/// Unknown: the pressure in a unit of its own where
-/// the cell is full, the share less one where it is not, so that both sides of the corner are of one
-/// size.
+/// Unknown: the pressure in a unit of its own where the cell is full, the share less one where it is
+/// not, so that both sides of the corner are of one size.
 bool CarriedPad::advance(const Vec2& r, double slip, double rate,
                          std::vector<double>& content) const {
   using Three = Dual<3>;
@@ -261,17 +252,14 @@ std::vector<double> CarriedPad::balanced(const Vec2& r, double slip) const {
   return content;
 }
 
-const std::vector<double>& CarriedPad::balanced_once(const Vec2& r, double slip) const {
-  struct Last {
-    std::uint64_t pad = 0;
-    Vec2 r = Vec2::Zero();
-    double slip = 0;
-    std::vector<double> content;
-  };
-  thread_local Last last;
-  if (last.pad != number_ || last.r != r || last.slip != slip)
-    last = {number_, r, slip, balanced(r, slip)};
-  return last.content;
+double CarriedPad::balanced_cell(Index i, const Vec2& r, double slip) const {
+  const std::lock_guard guard(last_.lock);
+  if (last_.r != r || last_.slip != slip) {
+    last_.content = balanced(r, slip);
+    last_.r = r;
+    last_.slip = slip;
+  }
+  return last_.content[at(i)];
 }
 
 template <bool Offsets>
@@ -399,8 +387,7 @@ template <bool Offsets>
 void CarriedCell<Offsets>::relax(const Nodes& x, const system::Context& c,
                                  std::array<double, own>& q) const {
   const LateralMotion m = motion(x, c);
-  const std::vector<double>& all = pad->balanced_once(m.r, m.spin - m.housing_spin);
-  const double content = all[at(cell)];
+  const double content = pad->balanced_cell(cell, m.r, m.spin - m.housing_spin);
   if (std::isfinite(content)) q[0] = content - pad->reference(cell);
 }
 

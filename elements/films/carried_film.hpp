@@ -27,8 +27,8 @@
 // and what a ruptured stretch holds is smeared over some cells on its way.
 #pragma once
 #include <elements/films/finite_journal.hpp>
-#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace whirl::elements {
@@ -70,8 +70,8 @@ class CarriedPad {
   /// The contents, m, at which nothing changes with the journal still at r; at rest: full.
   /// NaN where the journal stands outside the film.
   std::vector<double> balanced(const Vec2& r, double slip) const;
-  /// The same; what was asked last is not computed again. Valid until the thread asks anew.
-  const std::vector<double>& balanced_once(const Vec2& r, double slip) const;
+  /// That of one cell. What was asked last is kept: the cells ask one after another, of any thread.
+  double balanced_cell(Index i, const Vec2& r, double slip) const;
 
   /// Moves the contents on by a step of implicit Euler of the length 1/rate, s, at whose end the
   /// journal stands at r. False: no solution was found.
@@ -99,7 +99,13 @@ class CarriedPad {
                const Oil<T>* right, T& driven) const;
 
   FiniteJournal film_;
-  std::uint64_t number_;  ///< of all pads there were
+  struct Balance {
+    std::mutex lock;
+    Vec2 r = Vec2::Constant(nan);
+    double slip = nan;
+    std::vector<double> content;
+  };
+  mutable Balance last_;
   double start_, width_, clearance_, lift_;
   Vec2 thinnest_;
   std::vector<Vec2> normal_;  ///< int n dtheta of each cell

@@ -514,21 +514,12 @@ void HarmonicRun::find_peak(Found& x) const {
   x.bounded = is_bounded(responder, x);
 }
 
-/// Without damping a response turns about within rounding of its resonance; damped by as little as
-/// 1e-6 of the critical it does not within 1e-7 of the place.
 bool HarmonicRun::is_bounded(Responder& responder, const Found& x) const {
-  constexpr double beside = 1e-7;
-  const FrequencyPoint below = respond(responder, x.at * (1 - beside)),
-                       above = respond(responder, x.at * (1 + beside));
-  VecXc a(2), b(2);
-  if (twists_) {
-    a << below.unknown[x.probe], 0.0;
-    b << above.unknown[x.probe], 0.0;
-  } else {
-    a << below.probe[x.probe].y, below.probe[x.probe].z;
-    b << above.probe[x.probe].y, above.probe[x.probe].z;
-  }
-  return !(a.dot(b).real() < -0.5 * a.norm() * b.norm());
+  const auto amplitude = [&](double side) {
+    const FrequencyPoint p = respond(responder, x.at * (1 + side * analysis::beside_resonance));
+    return twists_ ? analysis::PointAmplitude{p.unknown[x.probe], 0.0} : p.probe[x.probe];
+  };
+  return !analysis::turns_about(amplitude(-1.0), amplitude(1.0));
 }
 
 void HarmonicRun::find_peaks() {

@@ -295,6 +295,13 @@ void HarmonicSolver::add_free_spin(VecXc& x) const {
   }
 }
 
+bool turns_about(const PointAmplitude& below, const PointAmplitude& above) {
+  const double sense = (below.y * std::conj(above.y) + below.z * std::conj(above.z)).real();
+  const double size = std::sqrt((std::norm(below.y) + std::norm(below.z)) *
+                                (std::norm(above.y) + std::norm(above.z)));
+  return sense < -0.5 * size;
+}
+
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p) {
   WHIRL_EXPECTS(a.size() == linear.system().size());
   WHIRL_EXPECTS(p.node >= 0 && p.node < linear.system().nodes());

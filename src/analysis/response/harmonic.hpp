@@ -84,6 +84,10 @@ struct PointAmplitude {
 };
 /// @pre a of length system().size(), p on one of its nodes.
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
+/// Where nothing damps a resonance the response turns about from just below it to just above, by this
+/// share of the frequency; a damping ratio of 1e-6 keeps it from that.
+inline constexpr double beside_resonance = 1e-7;
+bool turns_about(const PointAmplitude& below, const PointAmplitude& above);
 /// Largest displacement of a node, m.
 /// @pre a of length system.size().
 double largest_displacement(const system::System& system, const VecXc& a);

@@ -277,13 +277,10 @@ void UnbalanceSolver::resolve(std::vector<SteadyPoint>& points) {
 }
 
 bool UnbalanceSolver::is_bounded(const ResponsePeak& peak) {
-  constexpr double beside = 1e-7;
-  const PointAmplitude below = at(peak.speed * (1 - beside), false).probe[peak.order][peak.probe];
-  const PointAmplitude above = at(peak.speed * (1 + beside), false).probe[peak.order][peak.probe];
-  const double sense = (below.y * std::conj(above.y) + below.z * std::conj(above.z)).real();
-  const double size = std::sqrt((std::norm(below.y) + std::norm(below.z)) *
-                                (std::norm(above.y) + std::norm(above.z)));
-  return !(sense < -0.5 * size);
+  const auto amplitude = [&](double side) {
+    return at(peak.speed * (1 + side * beside_resonance), false).probe[peak.order][peak.probe];
+  };
+  return !turns_about(amplitude(-1.0), amplitude(1.0));
 }
 
 void UnbalanceSolver::drop_unbounded(std::vector<SteadyPoint>& points) const {
