@@ -567,7 +567,9 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"W14", "a mean of a stiffness that turns",
        "The rotor has unequal principal stiffnesses or moments of inertia, or a crack. Modes, "
        "critical speeds and harmonic responses are computed in fixed axes with their mean over a "
-       "revolution, of a crack that of its compliance. In truth unbalance meets two "
+       "revolution, of a crack that of its compliance; a step at 0 rpm alone takes them at the "
+       "angle at "
+       "which the rotor lies. In truth unbalance meets two "
        "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
        "response and a stability step are computed in axes that turn with the shaft and show both.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},

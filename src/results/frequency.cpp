@@ -156,6 +156,22 @@ std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
       law);
 }
 
+/// Nothing turns at 0 rpm; of a range, it is the end of a curve along which the rotor turns.
+bool stands(const model::StepLaw& law) {
+  if (const auto* modal = std::get_if<model::ModalStep>(&law)) return modal->speed == 0;
+  if (const auto* s = std::get_if<model::SensitivityStep>(&law)) return s->speed == 0;
+  const auto* harmonic = std::get_if<model::HarmonicStep>(&law);
+  return harmonic && !harmonic->speeds && harmonic->speed == 0;
+}
+
+analysis::SteadyRotation rotation_of(const run::Job& job, const model::StepLaw& law,
+                                     double top_speed) {
+  analysis::SteadyRotation r = steady_rotation_of(job, top_speed);
+  const bool uneven = turns_with_stiffness(job.model) || turns_with_inertia(job.model);
+  r.mean = !(uneven && stands(law));  // else principal axes lie where they are
+  return r;
+}
+
 /// What a kind of motion leaves out.
 std::string motion_text(model::MotionKind kind) {
   switch (kind) {
@@ -192,7 +208,7 @@ FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::strin
                              const std::string& title, double top_speed, int load_steps)
     : job((j.build_for(s), j)),  // first: what follows reads what is built
       step(s),
-      linear(j.system(), steady_rotation_of(j, top_speed), equilibrium_options(j, load_steps)),
+      linear(j.system(), rotation_of(j, s.law, top_speed), equilibrium_options(j, load_steps)),
       top_speed_(top_speed),
       load_steps_(load_steps) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
@@ -207,7 +223,7 @@ FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::strin
 }
 
 analysis::Linearizer FrequencyStep::linearizer_of(const system::System& other) const {
-  analysis::Linearizer out(other, steady_rotation_of(job, top_speed_),
+  analysis::Linearizer out(other, rotation_of(job, step.law, top_speed_),
                            equilibrium_options(job, load_steps_));
   if (about_undeformed(step.law)) out.stay_undeformed();
   return out;
@@ -369,7 +385,7 @@ void FrequencyStep::warn_of_mean_stiffness() {
   const bool in_bands = type_ == "stability" && stiffness;
   const bool not_lateral = type_ == "torsional" || type_ == "buckling";
   const bool in_its_axes = type_ == "unbalance_response" && turns_as_one();
-  if (in_bands || in_its_axes || not_lateral) return;
+  if (in_bands || in_its_axes || not_lateral || stands(step.law)) return;
   if (!stiffness && !turns_with_inertia(job.model)) return;
   const std::string what =
       breathes(job.model)
@@ -389,6 +405,24 @@ void FrequencyStep::warn_of_mean_stiffness() {
   warn(job, std::move(d));
 }
 
+namespace {
+
+/// Of a disk whose axis is not the shaft's: its moments across differ with the square of the angle,
+/// and products with the axis shift frequencies by their square. A swash of half a degree is none.
+bool is_uneven(const model::Disk& d) {
+  constexpr double seen = 1e-4;
+  if (!d.inertia) {
+    const double tilt = std::sin(d.skew);
+    return tilt * tilt * std::abs(d.Ip - d.Id) > seen * (d.Ip + 2 * d.Id);
+  }
+  const Mat3& J = *d.inertia;
+  const double across = std::max(std::abs(J(1, 1) - J(2, 2)), std::abs(J(1, 2)));
+  const double products = std::max(std::abs(J(0, 1)), std::abs(J(0, 2)));
+  return across > 1e-9 * J.trace() || products * products > seen * J.trace() * J.trace();
+}
+
+}  // namespace
+
 bool turns_with_inertia(const model::Model& m) {
   const auto turns = [](const model::Shaft& s) { return s.rotating && s.speed_ratio != 0; };
   const auto of_section = [](const model::Section& x) {
@@ -399,10 +433,7 @@ bool turns_with_inertia(const model::Model& m) {
       }))
     return true;
   return std::any_of(m.disks.begin(), m.disks.end(), [&](const model::Disk& d) {
-    if (!d.inertia || !turns(m.shafts[d.at.shaft])) return false;
-    const Mat3& J = *d.inertia;
-    const double difference = std::max(std::abs(J(1, 1) - J(2, 2)), std::abs(J(1, 2)));
-    return difference > 1e-9 * J.trace();
+    return turns(m.shafts[d.at.shaft]) && is_uneven(d);
   });
 }
 

@@ -134,6 +134,22 @@ TEST(Cracks, MeansAreSaid) {
   EXPECT_TRUE(d.says("crack enters as the mean of its compliance")) << d.log;
 }
 
+TEST(Cracks, AtRestItIsOpenOrShutAsItLies) {
+  const auto modes = [](const std::string& crack) {
+    const DeckRun d(rotor(crack + "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 3\n"));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    EXPECT_FALSE(d.says("W14")) << d.log;
+    const Columns t = d.csv("m_modes.csv");
+    return std::pair(t.rows.at(0)[t.column("frequency [Hz]")],
+                     t.rows.at(1)[t.column("frequency [Hz]")]);
+  };
+  const auto sound = modes(""), open = modes(mayes),
+             shut = modes(std::string(mayes).replace(mayes.find("270"), 3, "90"));
+  EXPECT_NEAR(shut.first, sound.first, 1e-6 * sound.first);
+  EXPECT_NEAR(shut.second, sound.second, 1e-6 * sound.second);
+  EXPECT_LT(open.first, 0.999 * sound.first);
+}
+
 TEST(Cracks, WhatIsRefused) {
   const auto refused = [](const std::string& deck, const char* code, const char* text) {
     const DeckRun d(deck);

@@ -201,6 +201,7 @@ def build(work, options):
     chosen = dict(enumerate(chosen, start=1))
     assert len(chosen) < LIMIT_SITES
     copy_files(work)
+    write_instrumented(work, chosen)  # before the configuration, which lists the sources of each folder
     if not (work.build / "build.ninja").exists():
         subprocess.run(["cmake", "--preset", "release", "-DWHIRL_BUILD_TESTS=ON", *options.cmake], cwd=work.tree, check=True,
                        stdout=subprocess.DEVNULL)
