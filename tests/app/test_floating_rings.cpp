@@ -496,6 +496,66 @@ double mean_ring_speed(const Columns& run, double from) {
   return run.means(from, 1e9).at("bearing DE ring speed [rpm]");
 }
 
+// The stiffness of a film is not symmetric: a whirl it damps strongly may store less than nothing. It
+// was "axial" or "torsional" then, by the rounding of what is left.
+TEST(FloatingRings, AStronglyDampedWhirlIsLateral) {
+  const auto run = [](const char* mass) {
+    return DeckRun(fmt::format(R"(format = 1
+[output]
+report = false
+[shaft]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "id[mm]"]
+rows = [["a", 150, 40, 16], ["b", 300, 30, 0], ["c", 300, 60, 0], ["d", 300, 60, 24]]
+[[disk]]
+at = "r/1.05 m"
+mass = "8 kg"
+Ip = "0.0003 kg.m^2"
+Id = "0.165 kg.m^2"
+[[disk]]
+at = "r/0.3 m"
+mass = "{}"
+Ip = "0.02 kg.m^2"
+Id = "0.012 kg.m^2"
+[[bearing]]
+name = "ring"
+at = "r/0.1 m"
+type = "floating_ring"
+film = "short"
+inner = {{ diameter = "50 mm", length = "20 mm", clearance = "50 um", viscosity = "10 mPa.s" }}
+outer = {{ diameter = "65 mm", length = "25 mm", clearance = "80 um", viscosity = "20 mPa.s" }}
+[[bearing]]
+at = "r/0.1 m"
+type = "linear"
+kxx = "1e8 N/m"
+cxx = "1000 N.s/m"
+[[bearing]]
+at = "r/0.9 m"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "1.2e7 N/m"
+cyy = "1e3 N.s/m"
+czz = "1e3 N.s/m"
+[[step]]
+name = "m"
+type = "modal"
+speed = "1500 rpm"
+modes = 8
+motion = "lateral"
+)",
+                               mass));
+  };
+  for (const char* mass : {"3 kg", "6.61386786554633 lbm"}) {
+    const DeckRun d = run(mass);
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns t = d.csv("m_modes.csv");
+    ASSERT_GE(t.rows.size(), 6u) << d.log;
+    for (const auto& row : t.rows)
+      EXPECT_NEAR(row[t.column("lateral [%]")], 100.0, 1e-6) << mass << ", mode " << row[0];
+  }
+}
+
 }  // namespace
 
 // Self-excited whirl of either film: the inner one at about half the sum of the speeds of shaft and

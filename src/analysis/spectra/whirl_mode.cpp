@@ -62,6 +62,13 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
 
 namespace {
 
+/// Energy of the components of one kind of motion. Films feed as well as store, and magnets take: what
+/// is stored may be negative, and is then as large all the same.
+struct Part {
+  double kinetic = 0, stored = 0;
+  double size() const { return std::max(kinetic, 0.0) + std::abs(stored); }
+};
+
 /// Shares of the energy by component, in axes of the line (e, e2, e3), and the kind of motion they
 /// make it. Returns their sum.
 double find_energy_shares(const la::MCK& m, const Linearizer& linear, WhirlMode& w) {
@@ -69,30 +76,31 @@ double find_energy_shares(const la::MCK& m, const Linearizer& linear, WhirlMode&
   VecXc mx, kx;
   la::multiply(m.M, w.x, mx);
   la::multiply(m.K, w.x, kx);
-  double lateral = 0, torsional = 0, axial = 0;
+  Part lateral, torsional, axial;
   const double w2 = std::norm(w.lambda);
+  const auto share = [](Complex a, Complex b) { return (std::conj(a) * b).real(); };
   for (Index i = 0; i < s.nodes(); ++i) {
     const auto x = w.x.segment<6>(6 * i);
-    if (x.isZero(0.0)) continue;
-    // Where nothing oscillates potential and kinetic energy cancel: by the kinetic energy alone.
-    Eigen::Matrix<Complex, 6, 1> f = w2 * mx.segment<6>(6 * i);
-    if (w.oscillates()) f += kx.segment<6>(6 * i);
-    const auto share = [](Complex a, Complex b) { return (std::conj(a) * b).real(); };
-    if (s.node(i).scalar) continue;
+    if (s.node(i).scalar || x.isZero(0.0)) continue;
     const Mat3& E = linear.equilibrium().state.frames.axes(i);
-    const Eigen::Vector3cd u = E.transpose() * x.head<3>(), g = E.transpose() * f.head<3>();
-    axial += share(u[0], g[0]);
-    lateral += share(u[1], g[1]) + share(u[2], g[2]) + share(x[4], f[4]) + share(x[5], f[5]);
-    torsional += share(x[3], f[3]);
+    const Eigen::Vector3cd u = E.transpose() * x.head<3>();
+    const auto add = [&](const VecXc& force, double factor, double Part::*energy) {
+      const Eigen::Matrix<Complex, 6, 1> f = factor * force.segment<6>(6 * i);
+      const Eigen::Vector3cd g = E.transpose() * f.head<3>();
+      axial.*energy += share(u[0], g[0]);
+      lateral.*energy +=
+          share(u[1], g[1]) + share(u[2], g[2]) + share(x[4], f[4]) + share(x[5], f[5]);
+      torsional.*energy += share(x[3], f[3]);
+    };
+    add(mx, w2, &Part::kinetic);
+    // where nothing oscillates potential and kinetic energy cancel: by the kinetic energy alone
+    if (w.oscillates()) add(kx, 1.0, &Part::stored);
   }
-  lateral = std::max(lateral, 0.0);
-  torsional = std::max(torsional, 0.0);
-  axial = std::max(axial, 0.0);
-  const double total = lateral + torsional + axial;
+  const double total = lateral.size() + torsional.size() + axial.size();
   if (total > 0) {
-    w.lateral = lateral / total;
-    w.torsional = torsional / total;
-    w.axial = axial / total;
+    w.lateral = lateral.size() / total;
+    w.torsional = torsional.size() / total;
+    w.axial = axial.size() / total;
   }
   w.kind = w.torsional > w.lateral && w.torsional >= w.axial ? ModeKind::torsional
            : w.axial > w.lateral                             ? ModeKind::axial
