@@ -36,9 +36,8 @@ std::array<Complex, 3> roots(Complex c0, Complex c1, Complex c2, Complex c3) {
   c1 /= c3;
   c2 /= c3;
   auto value = [&](Complex z) { return ((z + c2) * z + c1) * z + c0; };
-  const double bound = 1.0 + std::max({std::abs(c0), std::abs(c1), std::abs(c2)});
   for (std::size_t k = 0; k < 3; ++k)
-    x[k] = std::polar(std::min(bound, 1.0), 0.4 + two_pi * static_cast<double>(k) / 3.0);
+    x[k] = std::polar(1.0, 0.4 + two_pi * static_cast<double>(k) / 3.0);
   for (int it = 0; it < 500; ++it) {
     double change = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -243,6 +243,20 @@ motion = "lateral"
             "twist of shaft 'r' at b:end: drive 'motor' prescribes its angle (the speed is that of "
             "the step)");
   EXPECT_EQ(d.summary("bending").at("held").items().size(), 2u);
+  // of one step alone
+  const DeckRun one(rotor(smooth + "\nstep = \"m\"\n", R"([[step]]
+name = "m"
+type = "modal"
+speed = "9000 rpm"
+[[step]]
+name = "free"
+type = "modal"
+speed = "9000 rpm"
+)"));
+  ASSERT_EQ(one.exit, 0) << one.log;
+  EXPECT_EQ(one.summary("m").at("held").items().size(), 1u);
+  EXPECT_TRUE(one.says("m: held")) << one.log;
+  EXPECT_FALSE(one.says("free: held")) << one.log;
 }
 
 TEST(StepSpeeds, WhatNothingHoldsIsSaid) {

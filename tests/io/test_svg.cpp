@@ -133,6 +133,22 @@ TEST(Drawing, NamesStandAboveTheData) {
   EXPECT_EQ(named.y[0], bare.y[0]);
 }
 
+// What a page moves with the data when it is enlarged: the foot of a rule, along its own axis.
+TEST(Drawing, NamesOfRulesArePinnedToThem) {
+  plot::Axes a = axes({0, 1}, {0, 10});
+  a.rules.push_back({true, 0.25, "upright"});
+  a.rules.push_back({false, 4, "level"});
+  const Drawn d(a);
+  const auto pin = [&](const char* lock) {
+    const std::size_t at = d.svg.find(std::string("data-lock=\"") + lock);
+    return numbers_of(attribute(d.svg.substr(d.svg.rfind("<g class=\"pin\"", at)), "data-p"));
+  };
+  EXPECT_NEAR(pin("y").at(0), d.px(0.25), 0.01);
+  EXPECT_NEAR(pin("y").at(1), d.box[1], 0.01);
+  EXPECT_NEAR(pin("x").at(0), d.box[0] + d.box[2], 0.01);
+  EXPECT_NEAR(pin("x").at(1), d.py(4), 0.01);
+}
+
 TEST(Drawing, ColoursThatComeAgainAreDashed) {
   plot::Axes a = axes({0, 1}, {0, 0});
   for (int k = 1; k < 18; ++k) {

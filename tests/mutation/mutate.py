@@ -233,7 +233,7 @@ def build(work, options):
 
 
 def test_programs(work):
-    folders = re.findall(r"^whirl_tests\((\w+)", (work.tree / "tests" / "CMakeLists.txt").read_text(), re.M)
+    folders = re.findall(r"^ *whirl_tests\((\w+)", (work.tree / "tests" / "CMakeLists.txt").read_text(), re.M)
     return [f"test_{f}" for f in folders]
 
 
