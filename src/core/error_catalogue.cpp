@@ -568,10 +568,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The rotor has unequal principal stiffnesses or moments of inertia, or a crack. Modes, "
        "critical speeds and harmonic responses are computed in fixed axes with their mean over a "
        "revolution, of a crack that of its compliance; a step at 0 rpm alone takes them at the "
-       "angle at "
-       "which the rotor lies. In truth unbalance meets two "
-       "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
-       "response and a stability step are computed in axes that turn with the shaft and show both.",
+       "angle at which the rotor lies. In truth unbalance meets two critical speeds, one a "
+       "principal plane, and between them the rotor bends out: an unbalance response and a "
+       "stability step are computed in axes that turn with the shaft and show both.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W15", "a response that is not refined",
        "The points of a response over a range are made finer about natural frequencies or critical "

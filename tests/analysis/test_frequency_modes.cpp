@@ -686,3 +686,27 @@ TEST(FrequencyModes, AContradictedListIsNotComplete) {
     EXPECT_FALSE(c.stability_certain()) << unknown;
   }
 }
+
+TEST(FrequencyModes, WhatTheSearchKnowsIsInTheCertificate) {
+  analysis::OwnFrequency::Known k;
+  k.counted = true;
+  k.low = 3;
+  k.top = 500;
+  k.reach = 0.25;
+  k.rising = {Complex(-1, 40)};
+  analysis::SpectrumCertificate c;
+  c.open.clear();
+  c.take(k);
+  EXPECT_TRUE(c.complete());
+  EXPECT_DOUBLE_EQ(c.list.radius, 500);
+  EXPECT_DOUBLE_EQ(c.list.reach, 125);
+  ASSERT_TRUE(c.by_frequency.has_value());
+  EXPECT_DOUBLE_EQ(c.by_frequency->low, 3);
+  EXPECT_EQ(c.by_frequency->rising, 1);
+  k.missing = 2;
+  k.where = {Complex(-2, 90)};
+  c.take(k);
+  EXPECT_FALSE(c.complete());
+  EXPECT_EQ(c.list.missing, 2);
+  EXPECT_EQ(c.list.where, k.where);
+}

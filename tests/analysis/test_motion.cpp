@@ -86,6 +86,26 @@ TEST(MotionReduction, IsStaticCondensation) {
   }
 }
 
+// Of two stiffnesses what follows takes the one, what moves by itself the other.
+TEST(MotionReduction, WhatFollowsHasAStiffnessOfItsOwn) {
+  Rotor r = sagging(1e6);
+  const system::System s = r.b.finalize();
+  Linearizer linear(s);
+  const la::MCK m = linear.at(30.0);
+  la::MCK other = m;
+  for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(other.K.value_count()); ++k)
+    other.K.data()[k] *= 1.25;
+  MotionReduction motion(s, Motion::lateral);
+  const la::MCK& reduced = motion.reduce(m, other.K);
+  std::vector<Index> l, f;
+  for (Index k = 0; k < s.size(); ++k)
+    if (s.active()[static_cast<std::size_t>(k)])
+      (kind_of_unknown(s, k) == Motion::lateral ? l : f).push_back(k);
+  EXPECT_EQ(dense(reduced.K, l, l), dense(m.K, l, l));
+  EXPECT_EQ(dense(reduced.K, l, f), dense(other.K, l, f));
+  EXPECT_EQ(dense(reduced.K, f, l), dense(other.K, f, l));
+}
+
 // A restraint goes when the motion is held at another speed, and comes back.
 TEST(MotionReduction, RestraintsFollowTheStiffness) {
   Rotor r = sagging(1e6);

@@ -450,6 +450,35 @@ TEST(LinearLimits, AMeanOfAStiffnessThatTurnsIsSaid) {
   EXPECT_FALSE(DeckRun(rotor("", modes)).says("W14"));
 }
 
+// Motions without stiffness are told apart by what moves: nothing holds this shaft.
+TEST(LinearLimits, RigidMotionsOfAFreeShaftAreOfTheirKinds) {
+  const DeckRun run(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "free"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 400, 40], ["b", 300, 60]]
+[[step]]
+name = "m"
+type = "modal"
+modes = 8
+[output]
+report = false
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  std::ifstream file(run.folder / "r" / "m_real_roots.csv");
+  const std::string roots{std::istreambuf_iterator<char>(file), {}};
+  std::map<std::string, int> count;
+  for (const char* kind : {"lateral", "torsional", "axial"})
+    for (std::size_t at = roots.find(std::string(",") + kind + ",free"); at != std::string::npos;
+         at = roots.find(std::string(",") + kind + ",free", at + 1))
+      ++count[kind];
+  EXPECT_EQ(count, (std::map<std::string, int>{{"lateral", 4}, {"torsional", 1}, {"axial", 1}}))
+      << run.log;
+}
+
 // At rest the principal axes lie where they are: sqrt(k/m) in each; under its weight W the rotor is
 // a pendulum of dE = W^2/2 (1/k_soft - 1/k_stiff) between its two positions, k_phi = 2 dE.
 TEST(LinearLimits, AnAsymmetricShaftAtRestHasItsPrincipalModes) {

@@ -345,4 +345,21 @@ TEST(Mesh, Tables) {
   EXPECT_NE(station_table(m, mesh).find("a, left:start, bearing 'b'"), std::string::npos);
 }
 
+// Unknowns that change evenly along a line do so on the halved mesh.
+TEST(Mesh, StatesSpreadEvenlyOverHalvedElements) {
+  model::Model m = one_shaft({cylinder("a", 0.2, 0.04, 0, 2), cylinder("b", 0.6, 0.05, 0, 3)});
+  m.bearings.push_back(spring("b", 0.0, 1e7));
+  const Mesh mesh = make_mesh(m);
+  const auto unknowns = [](const Mesh& of) {
+    VecX x(6 * static_cast<Index>(of.nodes.size()));
+    for (Index n = 0; n < x.size() / 6; ++n)
+      for (int c = 0; c < 6; ++c)
+        x[6 * n + c] = (c + 1) * of.nodes[static_cast<std::size_t>(n)].s - 0.1 * c;
+    return x;
+  };
+  const Halved fine = halve(mesh, std::vector<bool>(mesh.lines.size(), true));
+  ASSERT_EQ(fine.middles.size(), 5u);
+  EXPECT_LT((spread(fine, unknowns(mesh)) - unknowns(fine.mesh)).cwiseAbs().maxCoeff(), 1e-14);
+}
+
 }  // namespace

@@ -97,8 +97,9 @@ TEST(AsymmetricShaft, UndampedTiltingIsInEveryCount) {
   EXPECT_GE(r.counted, 41);
   EXPECT_LT(r.counted_to, infinity);
   for (std::size_t k = 0; k < r.speeds.size(); ++k)
-    if (r.speeds[k] < 300.7 || r.speeds[k] > 330.9)
+    if (r.speeds[k] < 300.7 || r.speeds[k] > 330.9) {
       EXPECT_NEAR(r.growth[k], 0.0, 1e-6) << r.speeds[k];
+    }
 }
 
 TEST(AsymmetricShaft, BandOnEqualSupports) {

@@ -429,7 +429,7 @@ Index OwnFrequency::within(double w) const {
                        [&](const la::Mode& m) { return m.lambda.imag() <= w; });
 }
 
-bool OwnFrequency::add_new(const la::Mode& mode, std::vector<la::Mode>& to) {
+bool add_new(const la::Mode& mode, std::vector<la::Mode>& to) {
   // Two planes may have one frequency: new is what the vectors known there do not span.
   std::vector<const la::Mode*> close;
   for (const la::Mode& k : to)

@@ -30,6 +30,9 @@
 
 namespace whirl::analysis {
 
+/// Adds a mode unless those of its eigenvalue (to 1e-7) in the list span its shape. Whether it was new.
+bool add_new(const la::Mode& mode, std::vector<la::Mode>& to);
+
 class OwnFrequency {
  public:
   /// Matrices with the coefficients at w, rad/s; valid until the next call.
@@ -126,7 +129,6 @@ class OwnFrequency {
   bool rises(const Matrices& at, const Point& root);
   bool feels_tables(const Matrices& at, const la::Mode& mode);
   bool add(const la::Mode& mode) { return add_new(mode, found_); }
-  static bool add_new(const la::Mode& mode, std::vector<la::Mode>& to);
   /// Modes known of a frequency up to w.
   Index within(double w) const;
 

@@ -27,6 +27,22 @@ void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> o
     }
 }
 
+/// K, and of the flagged rows and columns those of another matrix.
+void copy_with(const la::BlockMatrix<6>& K, const la::BlockMatrix<6>& other,
+               std::span<const unsigned char> of_other, la::BlockMatrix<6>& out) {
+  std::copy_n(K.data(), K.value_count(), out.data());
+  if (&K == &other) return;
+  const la::BlockPattern& p = K.pattern();
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s) {
+      const Index j = p.cols()[at(s)];
+      for (Index r = 0; r < 6; ++r)
+        for (Index c = 0; c < 6; ++c)
+          if (of_other[at(6 * i + r)] || of_other[at(6 * j + c)])
+            out.block(s)(r, c) = other.block(s)(r, c);
+    }
+}
+
 }  // namespace
 
 Motion kind_of_unknown(const system::System& system, Index unknown) {
@@ -65,12 +81,13 @@ MotionReduction::MotionReduction(const system::System& system, Motion motion, Tw
       std::make_unique<la::BlockLu<double>>(system.pattern(), follows_, la::lu::Ordering::natural);
 }
 
-const la::MCK& MotionReduction::reduce(const la::MCK& m) {
+const la::MCK& MotionReduction::reduce(const la::MCK& m, const la::BlockMatrix<6>& following) {
   WHIRL_EXPECTS(m.K.pattern().size() == system_.nodes());
+  WHIRL_EXPECTS(following.pattern().size() == system_.nodes());
   if (!any_) return m;
   copy_without(m.M, follows_, reduced_.M);
   copy_without(m.C, follows_, reduced_.C);
-  std::copy_n(m.K.data(), m.K.value_count(), reduced_.K.data());
+  copy_with(m.K, following, follows_, reduced_.K);
   find_restraints();
   return reduced_;
 }

@@ -43,9 +43,14 @@ class MotionReduction {
     return active_[static_cast<std::size_t>(unknown)] &&
            !follows_[static_cast<std::size_t>(unknown)];
   }
+  bool anything_follows() const { return any_; }
   /// Matrices of the motion; m itself where nothing follows, else valid until the next call.
   /// @pre m stands on the pattern of the system.
-  const la::MCK& reduce(const la::MCK& m);
+  const la::MCK& reduce(const la::MCK& m) { return reduce(m, m.K); }
+  /// The same where K holds a part of the damping: following, stiffness without it, gives the rows and
+  /// columns of what follows, which is not damped. A free spin would not be free otherwise.
+  /// @pre both on the pattern of the system.
+  const la::MCK& reduce(const la::MCK& m, const la::BlockMatrix<6>& following);
   /// Unknowns whose free motion the last reduce() restrained.
   std::span<const Index> restraints() const { return restraints_; }
 

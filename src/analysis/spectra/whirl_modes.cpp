@@ -50,9 +50,17 @@ WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
   own_.emplace(linear.system().pattern(), motion_.active(), by_size, r.table_frequencies);
 }
 
-const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
-  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side)
-                                              : linear_.conservative_at(Omega, lambda.imag()));
+const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side, double tables) {
+  if (!options_.damped) {
+    matrices_ = &motion_.reduce(linear_.conservative_at(Omega, lambda.imag()));
+    return *matrices_;
+  }
+  // K holds the decay of the motion, - g eta/w C, where C is damping; what follows has none
+  const bool apart = linear_.hysteretic() && motion_.anything_follows() && lambda.real() != 0.0 &&
+                     std::isfinite(lambda.imag());
+  if (apart) following_ = linear_.at(Omega, Complex(0, lambda.imag()), side, tables).K;
+  const la::MCK& m = linear_.at(Omega, lambda, side, tables);
+  matrices_ = &motion_.reduce(m, apart ? following_ : m.K);
   return *matrices_;
 }
 
@@ -71,8 +79,7 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
     if (!by_frequency() || start.lambda.imag() == 0.0)
       return solver_.follow(matrices_at(Omega, rate, side), start);
     const auto at_rate = [&](double w) -> const la::MCK& {
-      matrices_ = &motion_.reduce(linear_.at(Omega, rate, side, w));
-      return *matrices_;
+      return matrices_at(Omega, rate, side, w);
     };
     return own_->settle(at_rate, start);
   };
@@ -229,6 +236,7 @@ void WhirlSolver::solve_hysteretic(double Omega) {
   // Coefficients against frequency keep modes apart that are not of one frequency, and may change
   // much between them.
   const double close = by_frequency() ? 1e-4 : 0.05;
+  std::vector<la::Mode> own;  // two starts may lead to one mode
   for (std::size_t i = 0; i < known.size();) {
     group.clear();
     do
@@ -245,6 +253,8 @@ void WhirlSolver::solve_hysteretic(double Omega) {
                                     "own frequency at {:.6g} rpm",
                                     to_rpm(Omega)),
                         "use a smaller internal_loss_factor, or internal_beta");
+      const bool oscillates = settled->lambda.imag() != 0.0;
+      if (oscillates && !add_new(*settled, own)) continue;
       modes_.push_back(describe_mode(*settled, *matrices_, linear_));
     }
   }
@@ -292,7 +302,7 @@ void WhirlSolver::count_hysteretic(double Omega) {
     if (!(p.low < p.top)) continue;
     p.at = [&](Complex s) -> const la::MCK& {
       const double w = std::clamp(s.imag(), p.low, p.top);
-      return motion_.reduce(linear_.at(Omega, Complex(s.real(), w), w, by_frequency() ? w : nan));
+      return matrices_at(Omega, Complex(s.real(), w), w, by_frequency() ? w : nan);
     };
     const la::WedgeCount c = wedge_->count(p);
     list.factorizations += c.factorizations;

@@ -58,7 +58,11 @@ class WhirlSolver {
   const SpectrumCertificate& certificate() const { return certificate_; }
 
  private:
-  const la::MCK& matrices_at(double Omega, Complex lambda, double side = nan);
+  const la::MCK& matrices_at(double Omega, Complex lambda, double side = nan) {
+    return matrices_at(Omega, lambda, side, lambda.imag());
+  }
+  /// tables: frequency that supports answer to.
+  const la::MCK& matrices_at(double Omega, Complex lambda, double side, double tables);
   bool by_frequency() const { return own_.has_value(); }
   /// Matrices with the tables at a frequency, hysteretic damping left to settle_rate.
   OwnFrequency::Matrices at_frequency(double Omega);
@@ -97,6 +101,7 @@ class WhirlSolver {
   double quiet_held_ = 0;  ///< rad/s: with the ends of the tables held all that grows is slower
   std::optional<la::WedgeCounter> wedge_;  ///< where damping is hysteretic
   const la::MCK* matrices_ = nullptr;
+  la::BlockMatrix<6> following_;  ///< stiffness of what follows, where the rate is complex
   std::vector<WhirlMode> modes_;
 };
 
