@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <random>
 
 using namespace whirl;
 using namespace whirl::analysis;
@@ -52,6 +53,47 @@ TEST(Certificates, LongCampaignOfFilms) {
                            tests::RandomMachine::Films::always);
   EXPECT_GE(t.certified, t.solved - t.solved / 250);
   report(t);
+}
+
+// Loss factors: each mode has a damping at its own rate, and the twist that follows lateral motion is
+// free to turn at any of them. Lateral lists are whole, and with inertia along and about the axis each
+// of their modes is there too, where it is not strongly damped (there the shaft's end may pull it).
+TEST(Certificates, LateralModesWithALossFactorAreAmongAll) {
+  constexpr unsigned machines = 24;
+  std::mt19937 rng(5);
+  int compared = 0;
+  for (unsigned seed = 1; seed <= machines; ++seed) {
+    const tests::RandomMachine machine(40000 + seed);
+    std::string deck = machine.deck();
+    const std::size_t damped = deck.find("damping = { internal_beta");
+    if (damped != std::string::npos) deck.erase(damped, deck.find('\n', damped) + 1 - damped);
+    const std::string steel = "material = \"steel\"\n";
+    const double loss = 1e-3 * std::pow(50.0, std::uniform_real_distribution<double>(0, 1)(rng));
+    deck.insert(deck.find(steel) + steel.size(),
+                fmt::format("damping = {{ internal_loss_factor = {} }}\n", loss));
+    const DeckModel d(deck);
+    Linearizer linear(d.built.system, d.running());
+    const double Omega = 0.5 * machine.top_speed() * rpm;
+    SpectrumCertificate of_lateral, of_all;
+    std::vector<WhirlMode> lateral, all;
+    try {
+      lateral = whirl_modes(linear, Omega, {.count = 6, .motion = Motion::lateral}, &of_lateral);
+      all = whirl_modes(linear, Omega, {.count = 14}, &of_all);
+    } catch (const Error& e) {
+      ASSERT_EQ(e.diagnostics().front().code, "E75") << seed << ": " << e.what();
+      continue;  // no equilibrium
+    }
+    EXPECT_TRUE(of_lateral.complete()) << seed << ": " << of_lateral.text();
+    for (const WhirlMode& m : lateral) {
+      if (m.damping_ratio > 0.5 || all.empty() || m.frequency > all.back().frequency) continue;
+      double nearest = infinity;
+      for (const WhirlMode& a : all)
+        nearest = std::min(nearest, std::abs(a.lambda - m.lambda));
+      EXPECT_LT(nearest, 0.02 * std::abs(m.lambda)) << seed << " at " << m.frequency;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 60);
 }
 
 // Cross coupling that grows past the damping with the speed: forward whirl grows from 1000 rad/s on,
