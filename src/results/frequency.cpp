@@ -342,7 +342,7 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
     e["factorizations"] = static_cast<int>(c.axis->factorizations);
   }
   v.push(std::move(e));
-  if (c.complete() || (!c.open.empty() && !c.contradicted())) return;
+  if (c.complete() || (!c.open.empty() && !c.unsettled && !c.contradicted())) return;
   const std::string message =
       fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
   job.uncertified.push_back(message);

@@ -10,8 +10,9 @@ namespace whirl::analysis {
 
 /// What is known of a list of modes, and of its stability.
 struct SpectrumCertificate {
-  la::Certificate list;  ///< roots counted against roots found
-  std::string open;      ///< why nothing was counted; empty when it was
+  la::Certificate list;    ///< roots counted against roots found
+  std::string open;        ///< why nothing was counted; empty when it was
+  bool unsettled = false;  ///< open because the count did not settle
   /// rad/s: above it nothing grows (energy) by more than quiet_ratio of its frequency, times its
   /// frequency over this one; nan: not excluded, or not asked for.
   double quiet_above = nan;

@@ -317,6 +317,7 @@ void WhirlSolver::count_hysteretic(double Omega) {
   list.reach = p.reach * top;
   certificate_.by_frequency = SpectrumCertificate::ByFrequency{low, 0};
   certificate_.open.clear();
+  certificate_.unsettled = false;
 }
 
 /// Where nothing grows any more, no further than can be searched.
@@ -417,6 +418,7 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
     certificate_.open =
         "hysteretic damping depends on the frequency of each mode (each followed to its own "
         "frequency), and the count of its modes did not settle";
+    certificate_.unsettled = options_.certify;
     if (!options_.certify) certificate_.open = "not asked for";
     solve_hysteretic(Omega);
   } else if (by_frequency()) {
