@@ -2,7 +2,7 @@
 // shaft's centre, response peaks, orbits with keyphasor marks.
 #include <results/keyphasor_turns.hpp>
 
-#include <analysis/spectra/whirl_modes.hpp>
+#include <analysis/transient/order_filter.hpp>
 #include <core/text.hpp>
 #include <results/channels.hpp>
 

@@ -38,6 +38,7 @@ struct Changes {
 
 Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<double>& rows,
                         std::span<const unsigned char> active) {
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): the next call overwrites it
   const la::MCK base = at(rows.front());
   const la::BlockPattern& p = base.K.pattern();
   const std::size_t n = base.K.value_count();
