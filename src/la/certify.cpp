@@ -220,6 +220,57 @@ bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const 
   });
 }
 
+void ModeSolver::Impl::count_double_zeros() {
+  if (!slow_beside_zeros) return;
+  slow_beside_zeros = false;
+  constexpr double wide_step = 1e-3;
+  std::vector<Complex> others;
+  double slowest = infinity;
+  for (const Pair& p : known) {
+    if (p.rigid) continue;
+    others.push_back(p.lambda);
+    slowest = std::min(slowest, std::abs(p.lambda));
+  }
+  const Index free = static_cast<Index>(known.size() - others.size());
+  // the wider one where rounding of zeros reaches the first
+  for (const double within : {0.3, 3.0}) {
+    const double radius = within * slowest;
+    const RootCount zeros = counter->count(*m, {radius, radius, wide_step}, others);
+    certificate.factorizations += zeros.factorizations;
+    if (!zeros.certain) continue;
+    if (zeros.unknown >= free && zeros.unknown <= 2 * free) double_zeros = zeros.unknown - free;
+    return;
+  }
+}
+
+std::vector<Complex> ModeSolver::Impl::places_of_missing(Index number, const CountRegion& region) {
+  constexpr double unresolved = 0.1, further = 3.0;
+  constexpr int rounds = 12;
+  std::vector<Complex> places = counter->locate(number);
+  double radius = region.radius;
+  for (int round = 0; round < rounds && !places.empty(); ++round) {
+    double farthest = 0.0;
+    for (const Complex place : places)
+      farthest = std::max(farthest, std::abs(place));
+    if (farthest > unresolved * radius || farthest < zero_rounding) break;
+    radius = further * farthest;
+    const RootCount c = counter->count(*m, {radius, radius}, known_roots());
+    certificate.factorizations += c.factorizations;
+    if (!c.certain || c.unknown != number) break;
+    std::vector<Complex> closer = counter->locate(number);
+    if (closer.empty()) break;
+    places = std::move(closer);
+  }
+  return places;
+}
+
+bool ModeSolver::Impl::near_zero(const std::vector<Complex>& places) const {
+  constexpr double near = 10.0;  // a root of rounding splits into several round it
+  return !places.empty() && std::all_of(places.begin(), places.end(), [&](Complex place) {
+    return std::abs(place) < near * zero_rounding;
+  });
+}
+
 bool ModeSolver::Impl::only_zeros_missing() {
   std::vector<double> sizes;
   for (const Pair& p : known)
@@ -265,6 +316,7 @@ void ModeSolver::Impl::certify() {
   constexpr double less_reach = 0.7;
   for (int round = 0; round < rounds; ++round) {
     drop_unproved();
+    count_double_zeros();
     const CountRegion region{radius, std::min(oscillating_reach * radius, most_reach)};
     const RootCount c = counter->count(*m, region, known_roots());
     certificate.factorizations += c.factorizations;
@@ -282,7 +334,7 @@ void ModeSolver::Impl::certify() {
     if (c.unknown < 0 && drop_copies()) continue;
     if (c.unknown <= 0) break;
     if (avoid_crowd(c, radius)) continue;
-    certificate.where = counter->locate(c.unknown);
+    certificate.where = places_of_missing(c.unknown, region);
     bool any = false;
     if (further_copies(certificate.where)) {
       constexpr Index few = 2;  // more are a crowd, which nobody looks at
@@ -297,6 +349,7 @@ void ModeSolver::Impl::certify() {
     if (!any)
       for (const Complex place : certificate.where)
         any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;
+    if (!any && near_zero(certificate.where)) break;
     if (!any) any = look_everywhere(region);
     if (!any) break;
   }

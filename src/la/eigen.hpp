@@ -69,6 +69,10 @@ struct ModeOptions {
   bool certify = false;
   bool growing = false;  ///< with certify: on to the last root of the region with Re lambda > 0,
                          ///< whatever its number
+  /// Motions (a column each, of all unknowns) that may be free, as the model knows: spins, slides.
+  /// Those of their span that K does not resist are zero roots, wherever slow ones beside them leave
+  /// them to a search.
+  MatX maybe_free;
 };
 
 /// What is known of a list of modes: that every root of the region { Re s >= 0, |s| <= radius } and

@@ -48,6 +48,7 @@ Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) co
 
 void Eigenpairs::add_companions() {
   double_zeros = 0;
+  slow_beside_zeros = false;
   zero_rounding = 0.0;
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < known.size(); ++i)
@@ -69,6 +70,7 @@ void Eigenpairs::add_companions() {
   zero_rounding = 10.0 * std::sqrt(rounding);
   const DenseEigenpairs eig = eigenpairs(MatX(-DenseLu<double>(mass).solve(drag)));
   Index slow_found = count_slow_companions(free);
+  slow_beside_zeros = slow_found > 0;
   for (Index j = 0; j < r; ++j) {
     const Complex rate = eig.values(j);
     if (rate.imag() == 0.0 && slow_found > 0) {  // the search has told it from zero
@@ -113,17 +115,33 @@ std::vector<const Pair*> Eigenpairs::known_near(const Pair& p, double apart, boo
 }
 
 bool Eigenpairs::spanned(const Pair& p, const std::vector<const Pair*>& by) const {
-  if (by.empty()) return false;
-  constexpr double new_part = 0.05;
+  constexpr double new_part = 0.05, least_part = 1e-6;
   const VecX weight = polisher.weights(p.lambda);
-  MatXc a(p.x.size(), static_cast<Index>(by.size()));
-  for (std::size_t j = 0; j < by.size(); ++j) {
-    a.col(static_cast<Index>(j)) = weight.cwiseProduct(by[j]->x);
-    a.col(static_cast<Index>(j)).normalize();
-  }
+  const auto columns = [&](const std::vector<const Pair*>& pairs) {
+    MatXc a(p.x.size(), static_cast<Index>(pairs.size()));
+    for (std::size_t j = 0; j < pairs.size(); ++j)
+      a.col(static_cast<Index>(j)) = weight.cwiseProduct(pairs[j]->x).normalized();
+    return a;
+  };
+  const auto within = [](const VecXc& x, const MatXc& a) {
+    return a.cols() > 0 && ColumnSpan<Complex>(a).outside(x).norm() < new_part * x.norm();
+  };
   const VecXc x = weight.cwiseProduct(p.x);
-  const VecXc rest = ColumnSpan<Complex>(a).outside(x);
-  return rest.norm() < new_part * x.norm();
+  if (!within(x, columns(by))) return false;
+  // A slow motion drives free ones so far that little else of it is seen: that little decides.
+  std::vector<const Pair*> free, others;
+  for (const Pair& k : known)
+    if (k.rigid) free.push_back(&k);
+  for (const Pair* k : by)
+    if (!k->rigid) others.push_back(k);
+  if (free.empty() || others.size() < by.size()) return true;
+  const ColumnSpan<Complex> free_motions(columns(free));
+  const VecXc rest = free_motions.outside(x);
+  if (rest.norm() < least_part * x.norm()) return true;
+  MatXc rests = columns(others);
+  for (Index j = 0; j < rests.cols(); ++j)
+    rests.col(j) = free_motions.outside(rests.col(j)).normalized();
+  return within(rest, rests);
 }
 
 bool Eigenpairs::add(Pair&& p) {
@@ -148,11 +166,23 @@ bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
   const Index before =
       std::count_if(known.begin(), known.end(), [](const Pair& p) { return p.rigid; });
   std::vector<VecX> columns;
+  const auto resistance = [this](const VecX& v) {
+    Pair p;
+    p.x = v.cast<Complex>();
+    if (!polisher.evaluate(p)) return infinity;
+    polisher.assess(p);
+    return p.residual;
+  };
   const auto take = [&](VecX v) {
     const double size = v.norm();
     if (!(size > 0.0)) return;
     v /= size;
-    if (!complex_shift() && sigma != 0.0) purify(v);
+    if (!complex_shift() && sigma != 0.0) {
+      VecX pure = v;
+      purify(pure);
+      // it adds to what is slower than the shift (an integrator's decay)
+      if (resistance(pure) <= resistance(v)) v = std::move(pure);
+    }
     columns.push_back(v / v.norm());
   };
   for (const Pair& p : known)

@@ -41,6 +41,9 @@ struct Eigenpairs : ShiftedOperator {
   Index count_slow_companions(const std::vector<std::size_t>& free) const;
   /// Free motions whose second root is zero as well.
   Index double_zeros = 0;
+  /// Slow roots have vectors of free motions. They may be companions that a search has told from zero,
+  /// or motions of their own that drive free ones (an integrator's decay): the count tells.
+  bool slow_beside_zeros = false;
   /// 1/s: what rounding of the stiffness can make of a double zero.
   double zero_rounding = 0.0;
   /// Nothing resists the motion, but for what rounding mixed into its vector (taken off then).

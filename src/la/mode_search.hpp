@@ -98,6 +98,13 @@ struct ModeSolver::Impl : Eigenpairs {
   /// under damping in proportion to their stiffness all have the one rate -1/beta. Their number
   /// says nothing about the machine.
   bool further_copies(const std::vector<Complex>& places) const;
+  /// Sets double_zeros by a count round zero, where slow roots leave them in doubt.
+  void count_double_zeros();
+  /// Estimates of roots that a count of the region misses, Im >= 0. Those far nearer to zero than its
+  /// radius are counted and placed once more, on a curve as small as they are.
+  std::vector<Complex> places_of_missing(Index number, const CountRegion& region);
+  /// All of them are zeros as far as rounding tells.
+  bool near_zero(const std::vector<Complex>& places) const;
   /// Free motions whose zero roots the search could not tell apart (several at once are defective):
   /// they are counted by themselves, within a circle round zero that is small beside every other
   /// root, and the region once more with as many zeros. True: nothing else is missing.

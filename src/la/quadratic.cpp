@@ -337,8 +337,10 @@ void ModeSolver::Impl::solve(const MCK& matrices) {
     known.clear();
     return;
   }
+  find_known_free();
   prepare_operator(known.empty());
   if (!known.empty()) start_from_known();
+  add_rigid(known_free);
   const bool dense = n <= opt.dense_below && !complex_shift();
   fastest_root = 0.0;
   if (dense) {

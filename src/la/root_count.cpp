@@ -13,7 +13,6 @@ constexpr double largest_arc_step = 12.0;  ///< of log f between neighbouring sa
 constexpr double counting_surprise =
     0.4;  ///< of that, what the slopes do not explain: enough to count
 constexpr double moment_surprise = 2e-3;  ///< and to say where the roots are
-constexpr double difference = 1e-5;       ///< of the radius: step of the slope
 constexpr int deepest_arc = 14;           ///< halvings of one interval
 constexpr Index most_arc_samples = 400;
 
@@ -87,7 +86,7 @@ bool RootCounter::sample(double t, Sample& out) {
   out.s = point(t);
   if (t == 0.0 || t == 3.0) out.s.imag(0.0);  // exactly real: f is
   out.log_f = log_f(out.s);
-  const Complex beside = difference * region_.radius * Complex(0.6, 0.8);
+  const Complex beside = region_.slope_step * region_.radius * Complex(0.6, 0.8);
   out.slope = principal(log_f(out.s + beside) - out.log_f) / beside;
   return std::isfinite(std::abs(out.log_f)) && std::isfinite(std::abs(out.slope));
 }

@@ -23,6 +23,9 @@ namespace whirl::la {
 struct CountRegion {
   double radius = 0.0;  ///< rad/s, > 0
   double reach = 0.0;   ///< 1/s, > 0
+  /// Of the radius: over which d log f/ds is taken. So near to zero that the stiffness hides the inertia
+  /// by all but a few digits, rounding of f asks for more.
+  double slope_step = 1e-5;
   bool contains(Complex s) const;
 };
 

@@ -1,5 +1,6 @@
 #include <la/shifted_operator.hpp>
 
+#include <la/dense.hpp>
 #include <la/ritz.hpp>
 
 namespace whirl::la {
@@ -50,6 +51,47 @@ double ShiftedOperator::crude_limit() const {
   return most > 0.0 ? 10.0 * most : infinity;
 }
 
+void ShiftedOperator::find_known_free() {
+  known_free.clear();
+  if (opt.maybe_free.cols() == 0 || first_order || complex_shift()) return;
+  // of what K makes of them the part that is more than rounding, unknown by unknown
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon(), at_rounding = 1e-13;
+  const MatX& motions = opt.maybe_free;
+  MatX force(n, motions.cols());
+  VecX size = VecX::Zero(motions.rows()), y;
+  for (Index j = 0; j < motions.cols(); ++j) {
+    multiply(m->K, motions.col(j), y);
+    for (Index i = 0; i < n; ++i)
+      force(i, j) = y(unknown[at(i)]);
+    add_multiply_size(m->K, 1.0, motions.col(j).cwiseAbs(), size);
+  }
+  for (Index i = 0; i < n; ++i)
+    force.row(i) /= std::max(rounding * size(unknown[at(i)]), 1e-300);
+  // what resists one motion hardly and another one much must not be lost beside it
+  VecX scale(motions.cols());
+  for (Index j = 0; j < motions.cols(); ++j)
+    scale(j) = 1.0 / std::max(force.col(j).norm(), 1.0);
+  force *= scale.asDiagonal();
+  const SymmetricEigenpairs resisted = symmetric_eigenpairs(force.transpose() * force);
+  for (Index j = 0; j < motions.cols(); ++j) {
+    Pair p;
+    p.x = (motions * scale.cwiseProduct(resisted.vectors.col(j))).cast<Complex>();
+    if (!polisher.evaluate(p)) continue;
+    polisher.assess(p);  // a motion of supports against the rotor may be resisted by little beside
+    if (p.residual < at_rounding && polisher.is_unresisted(p)) known_free.push_back(std::move(p));
+  }
+}
+
+void ShiftedOperator::lock_known_free() {
+  for (const Pair& p : known_free)
+    for (const Index half : {Index(0), n}) {
+      VecX z = VecX::Zero(dimension());
+      for (Index i = 0; i < n; ++i)
+        z(half + i) = p.x(unknown[at(i)]).real();
+      krylov.lock(z);
+    }
+}
+
 void ShiftedOperator::find_shift() {
   double s = 1e-3 * crude_frequency(), good = 0.0;
   // What is without mass comes out of rounding, at sizes that more often than not outnumber the rest.
@@ -64,8 +106,10 @@ void ShiftedOperator::find_shift() {
     good = sigma = alpha = s;
     shift = s;
     krylov.reset(dimension(), 11);
+    lock_known_free();
     for (int k = 0; k < 14; ++k)
       if (!krylov.step(operation<double>())) break;
+    if (krylov.processed() == 0) return;  // all that can move is free
     const Ritz r = look(krylov);
     std::vector<double> sizes;
     for (std::size_t j = 0; j < r.theta.size(); ++j) {

@@ -22,12 +22,13 @@ struct ShiftedOperator {
   std::unique_ptr<DirectSolver<Complex>> complex;
   Krylov<double> krylov;
   const MCK* m = nullptr;
-  bool first_order = false;  ///< M = 0: lambda C + K, an N-sized operator
-  bool damped = true;        ///< C is not all zero
-  double sigma = 0.0;        ///< real shift of the operator
-  Complex shift;             ///< shift of the operator: sigma, or the user's
-  int refinements = 0;       ///< of each solution in the operator
-  double alpha = 1.0;        ///< scale of lambda in z = (x, lambda x / alpha)
+  bool first_order = false;      ///< M = 0: lambda C + K, an N-sized operator
+  bool damped = true;            ///< C is not all zero
+  double sigma = 0.0;            ///< real shift of the operator
+  Complex shift;                 ///< shift of the operator: sigma, or the user's
+  int refinements = 0;           ///< of each solution in the operator
+  double alpha = 1.0;            ///< scale of lambda in z = (x, lambda x / alpha)
+  std::vector<Pair> known_free;  ///< combinations of ModeOptions::maybe_free that K does not resist
   VecX x_, t_, y_;
   VecXc xc_, tc_, yc_;
   Work work;
@@ -153,6 +154,10 @@ struct ShiftedOperator {
   /// A real shift of half the least nonzero |lambda|, to an order of magnitude: below it rigid-body
   /// modes make K singular, far above it the eigenvalues seen from the shift crowd together.
   void find_shift();
+  /// Sets known_free.
+  void find_known_free();
+  /// Both roots of each known free motion out of the way of krylov.
+  void lock_known_free();
   Error singular_problem() const;
   /// fresh: no mode is known yet.
   void prepare_operator(bool fresh);

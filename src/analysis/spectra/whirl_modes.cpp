@@ -21,10 +21,29 @@ constexpr double furthest_search = 16.0;
 /// And where so few modes lie that far, much further: stiff supports of light rotors.
 constexpr double search_of_few = 1024.0;
 constexpr Index few_modes = 64;
-constexpr double whirl_of_speed = 2.0;  ///< and at least to this multiple of the speed
+constexpr double whirl_of_speed = 2.0;    ///< and at least to this multiple of the speed
+constexpr double beyond_bandwidth = 2.0;  ///< of a controller: its phase is worst about its corner
 
-la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
+/// A spin of each line about its axis and a slide of each in three directions, where they take part.
+MatX motions_of_lines(const system::System& system, const MotionReduction& motion) {
+  constexpr Index directions[] = {system::ux, system::ux + 1, system::ux + 2, system::spin_phi};
+  constexpr Index each = std::size(directions);
+  MatX out = MatX::Zero(system.size(), each * system.lines());
+  for (Index i = 0; i < system.nodes(); ++i) {
+    if (system.node(i).scalar) continue;
+    for (Index d = 0; d < each; ++d)
+      if (const Index k = 6 * i + directions[d]; motion.takes_part(k))
+        out(k, each * system.node(i).line + d) = 1.0;
+  }
+  Index used = 0;
+  for (Index j = 0; j < out.cols(); ++j)
+    if (out.col(j).any()) out.col(used++) = out.col(j);
+  return out.leftCols(used);
+}
+
+la::ModeOptions la_options(const ModesOptions& o, const MatX& maybe_free, bool hysteretic) {
   la::ModeOptions l;
+  l.maybe_free = maybe_free;
   l.certify = o.certify;
   l.count = o.count > 0 && hysteretic
                 ? o.count + 2
@@ -42,10 +61,12 @@ WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
       options_(options),
       motion_(linear.system(), options.motion),
       solver_(linear.system().pattern(), motion_.active(),
-              la_options(options, options.damped && linear.hysteretic())) {
+              la_options(options, motions_of_lines(linear.system(), motion_),
+                         options.damped && linear.hysteretic())) {
   const SteadyRotation& r = linear.running().running();
   if (!r.frequency_dependent()) return;
-  la::ModeOptions by_size = la_options(options, options.damped && linear.hysteretic());
+  la::ModeOptions by_size = la_options(options, motions_of_lines(linear.system(), motion_),
+                                       options.damped && linear.hysteretic());
   by_size.certify = by_size.growing = false;  // its search goes by |lambda|
   own_.emplace(linear.system().pattern(), motion_.active(), by_size, r.table_frequencies);
 }
@@ -192,7 +213,7 @@ void WhirlSolver::solve_by_frequency(double Omega) {
 void WhirlSolver::add_growth_beyond(double Omega) {
   const OwnFrequency::Matrices at = at_frequency(Omega);
   const OwnFrequency::Range range = own_->range(at);
-  la::ModeOptions far = la_options(options_, false);
+  la::ModeOptions far = la_options(options_, {}, false);
   far.certify = far.growing = far.real_roots = false;
   far.count = 0;
   far.max_frequency = range.held ? quiet_held_ : std::min(quiet_held_, range.high);
@@ -349,7 +370,8 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
   // Where nothing excludes growth at high frequencies, at least those that rotors whirl at, and
   // those that controllers act at, are searched.
   const double at_speed =
-      std::max(whirl_of_speed * std::abs(Omega), linear_.running().running().control_bandwidth);
+      std::max(whirl_of_speed * std::abs(Omega),
+               beyond_bandwidth * linear_.running().running().control_bandwidth);
   const auto fastest = solver_.fastest_root();
   constexpr double beyond_all = 100.0;  // and nothing is counted between the fastest and there
   const double wanted =
