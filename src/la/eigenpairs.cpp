@@ -69,18 +69,13 @@ void Eigenpairs::add_companions() {
   }
   zero_rounding = 10.0 * std::sqrt(rounding);
   const DenseEigenpairs eig = eigenpairs(MatX(-DenseLu<double>(mass).solve(drag)));
-  Index slow_found = count_slow_companions(free);
-  slow_beside_zeros = slow_found > 0;
+  Index slow_found = count_slow_companions(free), zeros = 0;
   for (Index j = 0; j < r; ++j) {
     const Complex rate = eig.values(j);
-    if (rate.imag() == 0.0 && slow_found > 0) {  // the search has told it from zero
-      --slow_found;
-      continue;
-    }
     // What rounding of K makes of a double zero is sqrt(rounding): a drag below that cannot be told
     // from none.
     if (!(std::abs(rate) > zero_rounding)) {
-      ++double_zeros;
+      ++zeros;
       continue;
     }
     if (rate.imag() < 0.0) continue;
@@ -93,14 +88,21 @@ void Eigenpairs::add_companions() {
     }
     // The projection is an estimate only (the left vector is another one); what does not polish is
     // left to the count.
+    constexpr double estimate = 0.9, apart = 1e-3;
+    if (slow_found > 0 && spanned(p, known_near(p, estimate, false))) {
+      --slow_found;  // the search has it
+      continue;
+    }
     if (!polisher.evaluate(p) || !polisher.polish(p, opt.tolerance, false)) continue;
-    if (std::abs(p.lambda - rate) > 0.9 * std::abs(rate)) continue;
+    if (std::abs(p.lambda - rate) > estimate * std::abs(rate)) continue;
     polisher.assess(p);
     make_real(p);
-    constexpr double apart = 1e-3;
     const auto alike = known_near(p, apart, false);  // several may die away at one rate
     if (!spanned(p, alike)) known.push_back(std::move(p));
   }
+  // Slow roots that are left may be what a search has told from zero.
+  slow_beside_zeros = slow_found > 0;
+  double_zeros = std::max<Index>(0, zeros - slow_found);
   sort_known();
 }
 

@@ -375,7 +375,7 @@ void FrequencyStep::finish(const std::string& line) {
   if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
   warn_of_mean_stiffness();
   run::ProgressLine(step.name, job.options.quiet)
-      .done(fmt::format("{}, {}, {}", line, about_, time.text()));
+      .done(fmt::format("{}{}, {}, {}", line, also_, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
 }

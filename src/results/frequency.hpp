@@ -76,6 +76,8 @@ class FrequencyStep {
   /// 2e-4"); also in the section's text.
   void claim(std::string text) { claim_ = std::move(text); }
   void claim_also(const std::string& text) { claim_ += (claim_.empty() ? "" : ", ") + text; }
+  /// What else the line on the terminal says, after what the step found.
+  void say_also(const std::string& text) { also_ += ", " + text; }
   /// Adds the section to the report, the run time to the summary, and a line to the terminal; each
   /// says about() and what the motion asked for leaves out.
   void finish(const std::string& line);
@@ -83,7 +85,7 @@ class FrequencyStep {
  private:
   /// W14, where the step takes the mean of a stiffness that turns.
   void warn_of_mean_stiffness();
-  std::string type_, about_, claim_;
+  std::string type_, about_, claim_, also_;
   double top_speed_;
   int load_steps_;
   Stopwatch watch_;

@@ -1,6 +1,8 @@
 #include <results/linear_limits.hpp>
 #include <core/contract.hpp>
 #include <results/clearances.hpp>
+#include <results/mesh_accuracy.hpp>
+#include <results/refined_response.hpp>
 #include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/table_spacing.hpp>
@@ -23,17 +25,65 @@ void warn(run::Job& job, Diagnostic d) {
 
 namespace {
 
-/// What grows at a speed, or "".
-std::string growth_at(analysis::WhirlSolver& solver, double Omega) {
-  const std::vector<analysis::WhirlMode>& modes = solver.solve(Omega);
-  const auto fastest = std::max_element(
-      modes.begin(), modes.end(), [](const analysis::WhirlMode& a, const analysis::WhirlMode& b) {
-        return a.lambda.real() < b.lambda.real();
-      });
-  if (fastest == modes.end() || fastest->growth() <= 0) return {};
-  return fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(fastest->kind),
-                     to_hz(fastest->frequency), fastest->lambda.real());
-}
+/// Free motions of a step's rotor that grow, whether its response lists modes or not.
+class Growth {
+ public:
+  explicit Growth(FrequencyStep& s) : step_(s), solver_(s.linear, options()), mesh_(s) {}
+  /// What grows at a speed, or "".
+  std::string at(double Omega) {
+    const std::optional<analysis::WhirlMode> mode = fastest(solver_, Omega);
+    if (!mode) {
+      const analysis::SpectrumCertificate& known = solver_.certificate();
+      if (!known.stability_certain()) known_to_ = std::min(known_to_, known.list.radius);
+      return {};
+    }
+    if (is_resolved(*mode, Omega)) return text_of(*mode);
+    // What elements as long as its waves say of a motion is no property of the rotor.
+    if (!refined_) {
+      refined_.emplace(step_);
+      on_refined_.emplace(refined_->linear(), options());
+    }
+    const std::optional<analysis::WhirlMode> refined = fastest(*on_refined_, Omega);
+    if (refined) return text_of(*refined);
+    known_to_ = std::min(known_to_, mode->frequency);
+    return {};
+  }
+  /// rad/s: growth above it is not excluded at one of the speeds; infinite: it is at all.
+  double known_to() const { return known_to_; }
+
+ private:
+  static analysis::ModesOptions options() {
+    analysis::ModesOptions o;
+    o.count = 4;
+    o.judge = true;
+    o.real_roots = true;
+    return o;
+  }
+  static std::optional<analysis::WhirlMode> fastest(analysis::WhirlSolver& solver, double Omega) {
+    const std::vector<analysis::WhirlMode>& modes = solver.solve(Omega);
+    const auto found = std::max_element(
+        modes.begin(), modes.end(), [](const analysis::WhirlMode& a, const analysis::WhirlMode& b) {
+          return a.lambda.real() < b.lambda.real();
+        });
+    if (found == modes.end() || found->growth() <= 0) return std::nullopt;
+    return *found;
+  }
+  bool is_resolved(const analysis::WhirlMode& mode, double Omega) {
+    constexpr double coarse = 0.05;  // of the frequency
+    return !mode.oscillates() || !(mesh_.of(mode, Omega, "") > coarse);
+  }
+  static std::string text_of(const analysis::WhirlMode& mode) {
+    return fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(mode.kind),
+                       to_hz(mode.frequency), mode.lambda.real());
+  }
+
+  FrequencyStep& step_;
+  analysis::WhirlSolver solver_;
+  MeshAccuracy mesh_;
+  std::optional<RefinedModel> refined_;
+  std::optional<analysis::WhirlSolver> on_refined_;
+  double known_to_ = infinity;
+};
 
 /// In axes that turn with it the rotor has lost stiffness in an odd number of directions: it bends
 /// out at its own speed.
@@ -57,11 +107,7 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  analysis::ModesOptions o;
-  o.count = 4;
-  o.judge = true;
-  o.real_roots = true;
-  analysis::WhirlSolver solver(s.linear, o);
+  Growth free_motions(s);
   std::optional<analysis::RotatingAxes> axes;
   if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one())
     axes.emplace(s.linear, speeds.back());
@@ -69,7 +115,7 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
     Diagnostic d;
     d.code = "W13";
     try {
-      const std::string growth = axes ? growth_at(*axes, Omega) : growth_at(solver, Omega);
+      const std::string growth = axes ? growth_at(*axes, Omega) : free_motions.at(Omega);
       if (growth.empty()) continue;
       d.message = fmt::format(
           "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never "
@@ -86,6 +132,10 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
     warn(s.job, std::move(d));
     return;
   }
+  if (free_motions.known_to() == infinity) return;
+  const double top = to_hz(free_motions.known_to());
+  s.summary()["growth not excluded above [Hz]"] = top;
+  s.say_also(fmt::format("growth above {:.5g} Hz not excluded", top));
 }
 
 /// Share of the film left by the equilibrium up to which coefficients of small motions are believed.

@@ -4,6 +4,7 @@
 
 #include <analysis/statics/equilibrium.hpp>
 #include <core/rotation.hpp>
+#include <model/support_traits.hpp>
 #include <system/joint_start.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <numeric>
+#include <optional>
 #include <unistd.h>
 
 namespace whirl::run {
@@ -148,13 +151,65 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
   return s;
 }
 
+namespace {
+
+bool ties_spins(const model::Joint& j) {
+  return j.to && (j.kind == model::JointKind::rigid || j.kind == model::JointKind::slider ||
+                  j.kind == model::JointKind::universal);
+}
+
+/// For each line the first of those that gears, couplings and joints turn in proportion to it.
+std::vector<std::size_t> tied_lines(const model::Model& m) {
+  std::vector<std::size_t> first(m.shafts.size());
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  const auto tie = [&](std::size_t a, std::size_t b) {
+    if (!m.shafts[a].rotating || !m.shafts[b].rotating) return;
+    const auto [to, from] = std::minmax({first[a], first[b]});
+    std::replace(first.begin(), first.end(), from, to);
+  };
+  for (const model::Bearing& b : m.bearings) {
+    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
+    if (pair && b.to) tie(b.at.shaft, b.to->shaft);
+  }
+  for (const model::Joint& j : m.joints)
+    if (ties_spins(j)) tie(j.at.shaft, j.to->shaft);
+  return first;
+}
+
+}  // namespace
+
+std::vector<double> Job::mean_spins(const StepState& start) const {
+  std::vector<double> spin;
+  for (const meshes::Line& line : mesh.lines)
+    spin.push_back(start.state.v[6 * line.first_node + system::spin_phi]);
+  // What meshes turns in proportion; the rest of what it does at a moment is vibration of twist.
+  const std::vector<std::size_t> tied = tied_lines(model);
+  const auto of_reference = static_cast<std::size_t>(mesh.nodes[at(reference())].line);
+  for (std::size_t group = 0; group < tied.size(); ++group) {
+    double along = 0.0, size = 0.0;
+    Index members = 0;
+    for (std::size_t l = group; l < tied.size(); ++l) {
+      if (tied[l] != group) continue;
+      const double ratio = model.shafts[l].speed_ratio;
+      // the reference is what speeds are measured by
+      const double weight = l == of_reference ? 1e12 : 1.0;
+      along += weight * ratio * spin[l];
+      size += weight * ratio * ratio;
+      ++members;
+    }
+    if (members < 2 || size == 0.0) continue;
+    for (std::size_t l = group; l < tied.size(); ++l)
+      if (tied[l] == group) spin[l] = along / size * model.shafts[l].speed_ratio;
+  }
+  return spin;
+}
+
 analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {
   analysis::SteadyRotation running;
+  const std::vector<double> spins = mean_spins(start);
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
-    const Index n = mesh.lines[l].first_node;
-    const double spin = start.state.v[6 * n + system::spin_phi];
     // at rest too a rotor that nothing holds is free to turn
-    running.ratio.push_back(start.speed != 0.0         ? spin / start.speed
+    running.ratio.push_back(start.speed != 0.0         ? spins[l] / start.speed
                             : model.shafts[l].rotating ? model.shafts[l].speed_ratio
                                                        : 0.0);
   }

@@ -78,6 +78,9 @@ struct Job {
   /// speed: of the reference, rad/s, every line at its speed_ratio whatever drives prescribe;
   /// without it lines turn as their drives prescribe at time 0, else with their initial spins.
   StepState start_of(const model::Step& step, std::optional<double> speed) const;
+  /// Spin of each line, rad/s; of lines that gears, couplings or joints tie in proportion, about which
+  /// they vibrate.
+  std::vector<double> mean_spins(const StepState& start) const;
   /// How the lines turn in a state.
   analysis::SteadyRotation steady_rotation_of(const StepState& start) const;
   /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts,

@@ -58,7 +58,7 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
 std::string growth_text(const analysis::SpeedVerdict& v) {
   return v.diverging > 0 && v.whirling == 0
              ? fmt::format("a motion diverges at {:.4g} 1/s", v.fastest)
-             : fmt::format("growth {:.4g} 1/s", v.fastest);
+             : fmt::format("growth {:.4g} 1/s at {:.5g} Hz", v.fastest, to_hz(v.fastest_at));
 }
 
 std::string onset_text(const analysis::Onset& x) {
@@ -238,7 +238,8 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   const analysis::StabilityResult r = analysis::find_instability(s.linear, o);
 
   io::Value& v = s.summary();
-  v["stable at the first speed"] = r.stable_at_start;
+  const bool unknown = r.stable_at_start && !r.verdicts.front().certificate.stability_certain();
+  v["stable at the first speed"] = unknown ? io::Value() : io::Value(r.stable_at_start);
   v["certified"] = r.certain();
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);

@@ -28,7 +28,10 @@ SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
     if (m.growth() <= 0) continue;
     ++(m.oscillates() ? v.whirling : v.diverging);
     v.growing += m.lambda.imag() != 0.0 ? 2 : 1;
-    v.fastest = std::max(v.fastest, m.lambda.real());
+    if (m.lambda.real() > v.fastest) {
+      v.fastest = m.lambda.real();
+      v.fastest_at = m.frequency;
+    }
   }
   return v;
 }

@@ -46,6 +46,7 @@ struct SpeedVerdict {
   Index whirling = 0, diverging = 0;  ///< growing roots: pairs that oscillate, real ones
   Index growing = 0;                  ///< growing roots, two a pair
   double fastest = 0;                 ///< 1/s: largest growth rate; 0 where nothing grows
+  double fastest_at = 0;              ///< rad/s: its frequency
   Index neutral = 0;                  ///< pairs that oscillate, of a growth within rounding
   double neutral_within = 0;          ///< 1/s: the largest of these roundings
   SpectrumCertificate certificate;

@@ -377,7 +377,16 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
   const double wanted =
       quiet ? quiet->above : std::max(at_speed, beyond_all * fastest.value_or(0.0));
   if (wanted > reached) {
+    std::vector<la::Mode> shorter = *modes;
     modes = &solver_.solve_to(m, wanted);
+    const bool grows = std::any_of(modes->begin(), modes->end(), [](const la::Mode& mode) {
+      return mode.lambda.real() > rounding_of(mode);
+    });
+    if (known.list.complete() && !solver_.certificate().complete() && !grows) {
+      // the list asked for is complete: further up it is not known whether anything grows
+      shorter_ = std::move(shorter);
+      return shorter_;
+    }
     known.list = solver_.certificate();
   }
   if (!quiet && fastest && known.list.complete()) {

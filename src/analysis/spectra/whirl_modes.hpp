@@ -103,6 +103,7 @@ class WhirlSolver {
   const la::MCK* matrices_ = nullptr;
   la::BlockMatrix<6> following_;  ///< stiffness of what follows, where the rate is complex
   std::vector<WhirlMode> modes_;
+  std::vector<la::Mode> shorter_;  ///< a list that is complete, where a longer one is not
 };
 
 }  // namespace whirl::analysis
