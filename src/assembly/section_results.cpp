@@ -122,28 +122,30 @@ void resolve(const BentElement& e, const Mat3& chart, double x, SectionAxis& tra
 
 }  // namespace
 
-std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
-                                               const Built& built, const system::Workspace& w,
-                                               int inner) {
-  std::vector<SectionPoint> out;
-  calc_section_results(m, mesh, built, w, inner, out);
-  return out;
+namespace {
+
+/// What an element puts on its nodes, as they are seen together.
+system::ForceX<14> element_force(const Built& built, std::size_t element,
+                                 const std::array<NodeState, 2>& ends, const system::Context& c) {
+  system::ForceX<14> f = system::ForceX<14>::Zero();
+  built.element_forces.at(element)(built.system, {&ends[0], &ends[1]}, c, f);
+  return f;
 }
 
-void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
-                          const system::Workspace& w, int inner, std::vector<SectionPoint>& out) {
+/// force(element, ends): what it puts on its nodes.
+template <class Force>
+void list_points(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
+                 const system::Workspace& w, int inner, const Force& force,
+                 std::vector<SectionPoint>& out) {
   WHIRL_EXPECTS(inner >= 0);
-  WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   out.clear();
   SectionAxis transported;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
     const meshes::Element& e = mesh.elements[k];
-    const auto [n1, n2] = system::seen_together(built.system, w, e.left.node, e.right.node);
-    system::ForceX<14> f = system::ForceX<14>::Zero();
-    built.element_forces.at(k)(built.system, {&n1, &n2}, w.context, f);
+    const auto ends = system::seen_together(built.system, w, e.left.node, e.right.node);
     const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
-    const BentElement now = stand(shaft, mesh, e, n1, n2, f);
+    const BentElement now = stand(shaft, mesh, e, ends[0], ends[1], force(k, ends));
     const Mat3& chart = *w.in_own_axes(e.left.node).chart;
     const model::Section& section = shaft.sections[e.section];
     const elements::ElementSection shape = element_section(m, e);
@@ -161,14 +163,54 @@ void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const
   }
 }
 
+}  // namespace
+
+ElementForces calc_element_forces(const meshes::Mesh& mesh, const Built& built,
+                                  const system::Workspace& w) {
+  WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
+  ElementForces out;
+  out.reserve(mesh.elements.size());
+  for (const meshes::Element& e : mesh.elements)
+    out.push_back(element_force(built, out.size(),
+                                system::seen_together(built.system, w, e.left.node, e.right.node),
+                                w.context));
+  return out;
+}
+
+std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
+                                               const Built& built, const system::Workspace& w,
+                                               int inner) {
+  std::vector<SectionPoint> out;
+  calc_section_results(m, mesh, built, w, inner, out);
+  return out;
+}
+
+std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
+                                               const Built& built, const system::Workspace& w,
+                                               const ElementForces& forces, int inner) {
+  WHIRL_EXPECTS(forces.size() == mesh.elements.size());
+  std::vector<SectionPoint> out;
+  const auto force = [&](std::size_t k, const auto&) { return forces[k]; };
+  list_points(m, mesh, built, w, inner, force, out);
+  return out;
+}
+
+void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
+                          const system::Workspace& w, int inner, std::vector<SectionPoint>& out) {
+  WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
+  const auto force = [&](std::size_t k, const std::array<NodeState, 2>& ends) {
+    return element_force(built, k, ends, w.context);
+  };
+  list_points(m, mesh, built, w, inner, force, out);
+}
+
 // The moment of a generalized force on phi has that force as its part along the normal.
 std::array<double, 2> calc_torques(const meshes::Mesh& mesh, const Built& built,
                                    const system::Workspace& w, std::size_t element) {
   WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   const meshes::Element& e = mesh.elements.at(element);
-  const auto [n1, n2] = system::seen_together(built.system, w, e.left.node, e.right.node);
-  system::ForceX<14> f = system::ForceX<14>::Zero();
-  built.element_forces[element](built.system, {&n1, &n2}, w.context, f);
+  const auto ends = system::seen_together(built.system, w, e.left.node, e.right.node);
+  const system::ForceX<14> f = element_force(built, element, ends, w.context);
   return {-f[6], f[13]};
 }
 

@@ -36,13 +36,27 @@ struct SectionPoint {
   double axial = 0, bending = 0, torsion = 0, von_mises = 0;  ///< Pa; axial is signed
 };
 
+/// What the element of each place of the mesh puts on its two nodes, N and N m in X (system/kernel.hpp).
+using ElementForces = std::vector<system::ForceX<14>>;
+
+/// In the state that the workspace holds.
+/// @pre w was evaluated.
+ElementForces calc_element_forces(const meshes::Mesh& mesh, const Built& built,
+                                  const system::Workspace& w);
+
 /// By line and element, `inner` points inside each element beside its two ends; in the state that
 /// the workspace holds.
 /// @pre w was evaluated; inner >= 0.
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner = 3);
-/// The same into `out`, whose memory is used again.
+/// With given forces of the elements, which need not be those of the state: the ends stand where the
+/// workspace has them.
+/// @pre w was evaluated; one force an element; inner >= 0.
+std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
+                                               const Built& built, const system::Workspace& w,
+                                               const ElementForces& forces, int inner = 3);
+/// The same as the first into `out`, whose memory is used again.
 void calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built,
                           const system::Workspace& w, int inner, std::vector<SectionPoint>& out);
 

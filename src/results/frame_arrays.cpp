@@ -1,4 +1,5 @@
 #include <results/frame_arrays.hpp>
+#include <core/contract.hpp>
 #include <core/parallel.hpp>
 #include <io/queued_frames.hpp>
 
@@ -66,20 +67,35 @@ void FrameArrays::take_sections(const std::vector<assembly::SectionPoint>& point
 
 void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Context& context,
                                 const assembly::ReactionAt& reaction) {
-  const bool moments = !support_moments_.empty() || !joint_moments_.empty();
+  const auto load_of = [&](const auto& x) {
+    return PlaceLoad{x.force(node, context, reaction),
+                     x.moment ? x.moment(node, context, reaction) : Vec3(Vec3::Zero())};
+  };
+  loads_.clear();
+  for (const assembly::SupportForce& f : job_.built.support_forces)
+    loads_.push_back(load_of(f));
+  joint_loads_.clear();
+  for (const assembly::JointResult& j : job_.built.joints)
+    joint_loads_.push_back(load_of(j));
+  take_loads(loads_, joint_loads_);
+}
+
+void FrameArrays::take_loads(const std::vector<PlaceLoad>& supports,
+                             const std::vector<PlaceLoad>& joints) {
+  WHIRL_EXPECTS(supports.size() == job_.built.support_forces.size());
+  WHIRL_EXPECTS(joints.size() == joints_.size());
   std::ranges::fill(support_moments_, Vec3::Zero());
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     supports_[i].setZero();
-    for (const assembly::SupportForce& f : job_.built.support_forces) {
-      if (f.name != job_.model.bearings[i].name) continue;
-      supports_[i] = f.force(node, context, reaction);
-      if (f.moment) support_moments_[i] = f.moment(node, context, reaction);
+    for (std::size_t k = 0; k < supports.size(); ++k) {
+      if (job_.built.support_forces[k].name != job_.model.bearings[i].name) continue;
+      supports_[i] = supports[k].force;
+      if (!support_moments_.empty()) support_moments_[i] = supports[k].moment;
     }
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const assembly::JointResult& j = job_.built.joints[i];
-    joints_[i] = j.force(node, context, reaction);
-    if (moments) joint_moments_[i] = j.moment ? j.moment(node, context, reaction) : Vec3::Zero();
+    joints_[i] = joints[i].force;
+    if (!joint_moments_.empty()) joint_moments_[i] = joints[i].moment;
   }
 }
 

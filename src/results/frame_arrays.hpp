@@ -16,6 +16,11 @@ io::VtkFrameOptions frame_options(const run::Job& job, const model::VtkOutput& a
 std::unique_ptr<io::FrameWriter> frame_writer(const run::Job& job,
                                               const io::VtkFrameOptions& options);
 
+/// On a shaft or the line of a joint, N, and about the place, N m; global axes.
+struct PlaceLoad {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+};
+
 class FrameArrays {
  public:
   explicit FrameArrays(const run::Job& job);
@@ -29,6 +34,8 @@ class FrameArrays {
   /// moment about its place, N m; global axes.
   void take_supports(const assembly::NodeAt& node, const system::Context& context,
                      const assembly::ReactionAt& reaction);
+  /// The same as given: in the order of Built::support_forces and of Built::joints.
+  void take_loads(const std::vector<PlaceLoad>& supports, const std::vector<PlaceLoad>& joints);
 
   /// The frame; valid until something is taken again. Charts: of the state, or its pictures turn
   /// with the old ones. In motion: with velocities.
@@ -40,6 +47,7 @@ class FrameArrays {
   std::vector<Vec3> velocity_, omega_, force_, moment_, supports_, joints_, support_moments_,
       joint_moments_;  ///< the moments: none where no law gives any
   std::vector<double> stress_;
+  std::vector<PlaceLoad> loads_, joint_loads_;
 };
 
 }  // namespace whirl::results

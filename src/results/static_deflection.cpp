@@ -24,9 +24,10 @@ constexpr int stretches = 8;  ///< of an element, between the points at which it
 class BetweenNodes {
  public:
   using Points = std::array<Vec3, stretches + 1>;
-  BetweenNodes(const run::Job& job, const system::Workspace& state)
+  BetweenNodes(const run::Job& job, const system::Workspace& state, const MeanLoads& loads)
       : job_(job),
-        forces_(assembly::calc_section_results(job.model, job.mesh, job.built, state, inner)) {}
+        forces_(assembly::calc_section_results(job.model, job.mesh, job.built, state,
+                                               loads.elements, inner)) {}
 
   Points of(std::size_t element) const;
 
@@ -243,7 +244,7 @@ void DeflectedLine::say_largest(std::vector<std::string>& lines, io::Value& summ
 }  // namespace
 
 void add_deflection(const run::Job& job, const std::string& step, const system::Workspace& state,
-                    StaticResults& out, io::Value& summary) {
+                    const MeanLoads& loads, StaticResults& out, io::Value& summary) {
   out.deflection.title = "Deflection";
   out.deflection.columns = {{"shaft", "-", ""},
                             {"s", "m", "from the left end"},
@@ -254,7 +255,7 @@ void add_deflection(const run::Job& job, const std::string& step, const system::
                             {"slope_y", "rad", "d_y of the section normal"},
                             {"slope_z", "rad", "d_z; along a path of the axes at the place"},
                             {"phi", "rad", "axial angle; of standing paths about the line"}};
-  const BetweenNodes between(job, state);
+  const BetweenNodes between(job, state, loads);
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
     DeflectedLine line(job, state, l);
     line.add_stations(out.deflection);

@@ -11,18 +11,13 @@ StaticFrames::StaticFrames(const run::Job& job, const std::string& step) {
   }
 }
 
-void StaticFrames::write(const run::Job& job, system::SystemProblem& problem,
-                         const system::State& s, double time,
+void StaticFrames::write(const run::Job& job, const system::Workspace& nodes, double time,
+                         const MeanLoads& loads,
                          const std::vector<assembly::SectionPoint>& points) {
-  const auto node = [&](Index k) -> const system::NodeState& {
-    return problem.workspace().in_own_axes(k);
-  };
-  VecX r(job.system().size());
-  job.system().residual(problem.workspace(), s.frames, s.t, s.q, s.v, s.a, r);
   FrameArrays arrays(job);
-  arrays.take_nodes(node);
+  arrays.take_nodes([&](Index k) -> const system::NodeState& { return nodes.in_own_axes(k); });
   arrays.take_sections(points);
-  arrays.take_supports(node, problem.workspace().context, [&](Index k) { return r[k]; });
+  arrays.take_loads(loads.supports, loads.joints);
   const io::FrameState frame = arrays.state(time, false);
   for (auto& w : writers_)
     w->frame(frame);

@@ -55,7 +55,7 @@ void push_components(io::Value& list, const Vec3& v) {
     list.push(x);
 }
 
-void add_supports(const run::Job& job, const std::vector<SupportLoad>& loads, StaticResults& out,
+void add_supports(const run::Job& job, const std::vector<PlaceLoad>& loads, StaticResults& out,
                   io::Value& summary) {
   out.supports.title = "Supports: force and moment on the shaft";
   out.supports.columns = {{"support", "-", ""},
@@ -67,7 +67,7 @@ void add_supports(const run::Job& job, const std::vector<SupportLoad>& loads, St
                           {"M_z", "N m", ""}};
   // What is below 1e-14 of the largest force is rounding of springs without load.
   double largest_force = 0;
-  for (const SupportLoad& f : loads)
+  for (const PlaceLoad& f : loads)
     largest_force = std::max(largest_force, f.force.norm());
   const auto clean = [&](Vec3 v) {
     return Vec3((v.array().abs() < 1e-14 * largest_force).select(0.0, v));
@@ -87,8 +87,8 @@ void add_supports(const run::Job& job, const std::vector<SupportLoad>& loads, St
   }
 }
 
-void add_joints(const run::Job& job, const system::Workspace& state, const VecX& reactions,
-                StaticResults& out, io::Value& summary) {
+void add_joints(const run::Job& job, const system::Workspace& state,
+                const std::vector<PlaceLoad>& loads, StaticResults& out, io::Value& summary) {
   out.joints.title = "Joints: force and moment on the line of 'at', about that place";
   out.joints.columns = {{"joint", "-", ""},
                         {"F_x", "N", ""},
@@ -100,12 +100,10 @@ void add_joints(const run::Job& job, const system::Workspace& state, const VecX&
                         {"angle", "rad", "of the line of 'at' against the other"},
                         {"second angle", "rad", "of a universal joint"},
                         {"slide", "m", ""}};
-  const auto node = [&](Index n) -> const system::NodeState& { return state.in_own_axes(n); };
-  const auto reaction = [&](Index k) { return reactions[k]; };
   const auto coordinate = [&](Index n) { return state.nodes[at(n)].u[0]; };
-  for (const assembly::JointResult& j : job.built.joints) {
-    const Vec3 F = j.force(node, state.context, reaction);
-    const Vec3 M = j.moment ? j.moment(node, state.context, reaction) : Vec3(Vec3::Zero());
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const assembly::JointResult& j = job.built.joints[i];
+    const Vec3 &F = loads[i].force, &M = loads[i].moment;
     const auto angle = [&](std::size_t k) {
       return k < j.angles.size() ? coordinate(j.angles[k]) : 0.0;
     };
@@ -133,40 +131,22 @@ void add_spin_holds(const run::Job& job, std::span<const Index> spin_holds, cons
 
 }  // namespace
 
-std::vector<SupportLoad> calc_support_loads(const run::Job& job, analysis::SteadySystem& running,
-                                            const system::State& state, double Omega,
-                                            const VecX& reactions) {
-  const auto& supports = job.built.support_forces;
-  std::vector<SupportLoad> out(supports.size());
-  const auto reaction = [&](Index k) { return reactions[k]; };
-  const bool inside = running.visit_revolution(
-      state.frames, Omega, state.q, [&](double weight, const system::Workspace& w) {
-        const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
-        for (std::size_t i = 0; i < supports.size(); ++i) {
-          out[i].force += weight * supports[i].force(node, w.context, reaction);
-          if (supports[i].moment)
-            out[i].moment += weight * supports[i].moment(node, w.context, reaction);
-        }
-      });
-  if (!inside) throw run_error("R11", "the state found cannot be evaluated", {});
-  return out;
-}
-
 StaticResults make_static_results(run::Job& job, const std::string& step,
-                                  system::SystemProblem& problem,
-                                  const std::vector<SupportLoad>& loads, const VecX& reactions,
-                                  std::span<const Index> spin_holds, io::Value& summary) {
+                                  system::SystemProblem& problem, const MeanLoads& loads,
+                                  const VecX& reactions, std::span<const Index> spin_holds,
+                                  io::Value& summary) {
   StaticResults out;
   const system::Workspace& state = problem.workspace();
-  add_deflection(job, step, state, out, summary);
+  add_deflection(job, step, state, loads, out, summary);
   add_rolling_loads(job, state, out, summary);
   add_magnets(job, state, out, summary);
-  add_supports(job, loads, out, summary);
-  add_joints(job, state, reactions, out, summary);
+  add_supports(job, loads.supports, out, summary);
+  add_joints(job, state, loads.joints, out, summary);
   add_spin_holds(job, spin_holds, reactions, out, summary);
-  summary["elastic energy [J]"] = problem.energy().elastic;
-  out.points = assembly::calc_section_results(job.model, job.mesh, job.built, state);
-  add_sections(job, step, out, summary);
+  summary["elastic energy [J]"] = loads.elastic_energy;
+  out.points =
+      assembly::calc_section_results(job.model, job.mesh, job.built, state, loads.elements);
+  add_sections(job, step, loads.elements_vary, out, summary);
   return out;
 }
 

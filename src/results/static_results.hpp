@@ -1,6 +1,7 @@
 // Tables and figures of a static state: deflection, supports, section forces, stresses.
 #pragma once
 #include <analysis/statics/load_path.hpp>
+#include <results/mean_loads.hpp>
 #include <run/job.hpp>
 #include <assembly/section_results.hpp>
 #include <string>
@@ -18,24 +19,11 @@ struct StaticResults {
   std::vector<std::string> lines;  ///< for the terminal
 };
 
-/// Force and moment of each support on the shaft, in the order of Built::support_forces, N and N m.
-struct SupportLoad {
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-};
-
-/// Of an equilibrium at speed the mean over the revolution, which is what is in balance. reactions:
-/// mean residual at held unknowns.
-/// @throws Error (R11) when the state cannot be evaluated.
-std::vector<SupportLoad> calc_support_loads(const run::Job& job, analysis::SteadySystem& running,
-                                            const system::State& state, double Omega,
-                                            const VecX& reactions);
-
-/// `problem` has evaluated the state (power()); reactions: residual at held unknowns, and at spin
-/// holds.
+/// `problem` has evaluated the state; reactions: residual at held unknowns, and at spin holds.
 StaticResults make_static_results(run::Job& job, const std::string& step,
-                                  system::SystemProblem& problem,
-                                  const std::vector<SupportLoad>& loads, const VecX& reactions,
-                                  std::span<const Index> spin_holds, io::Value& summary);
+                                  system::SystemProblem& problem, const MeanLoads& loads,
+                                  const VecX& reactions, std::span<const Index> spin_holds,
+                                  io::Value& summary);
 
 /// Load path: factor and displacements (of probes, else disks) point by point.
 class PathRecord {
@@ -60,8 +48,9 @@ class PathRecord {
 class StaticFrames {
  public:
   StaticFrames(const run::Job& job, const std::string& step);
-  void write(const run::Job& job, system::SystemProblem& problem, const system::State& s,
-             double time, const std::vector<assembly::SectionPoint>& points);
+  /// nodes: evaluated at the state.
+  void write(const run::Job& job, const system::Workspace& nodes, double time,
+             const MeanLoads& loads, const std::vector<assembly::SectionPoint>& points);
   bool any() const { return !writers_.empty(); }
   void end();
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace whirl::results {
 
@@ -21,9 +22,13 @@ io::Table::Cell stress_cell(const SectionPoint& p, double x) {
   return p.has_stress ? io::Table::Cell(x) : io::Table::Cell("");
 }
 
-void add_section_table(const run::Job& job, StaticResults& out) {
+/// Behind what is not what any moment of the turn has.
+constexpr std::string_view as_mean = ", mean over a turn in fixed axes";
+
+void add_section_table(const run::Job& job, bool means, StaticResults& out) {
   io::Table& t = out.sections;
   t.title = "Section forces and stresses";
+  if (means) t.title += as_mean;
   t.columns = {{"shaft", "-", ""},
                {"s", "m", ""},
                {"element", "-", ""},
@@ -212,10 +217,11 @@ plot::Figure stress_figure(const run::Job& job, const std::string& step, std::si
 
 }  // namespace
 
-void add_sections(const run::Job& job, const std::string& step, StaticResults& out,
+void add_sections(const run::Job& job, const std::string& step, bool means, StaticResults& out,
                   io::Value& summary) {
-  add_section_table(job, out);
+  add_section_table(job, means, out);
   out.extremes.title = "Largest section forces and stresses";
+  if (means) out.extremes.title += as_mean;
   out.extremes.columns = {{"shaft", "-", ""},
                           {"quantity", "-", ""},
                           {"value", "", ""},
@@ -228,7 +234,8 @@ void add_sections(const run::Job& job, const std::string& step, StaticResults& o
   };
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
     add_extremes(job, l, out, summary);
-    const std::string of = job.mesh.lines.size() > 1 ? " of " + job.mesh.lines[l].name : "";
+    std::string of = job.mesh.lines.size() > 1 ? " of " + job.mesh.lines[l].name : "";
+    if (means) of += as_mean;
     show(force_figure(job, step, l, out.points, of));
     if (stressed) show(stress_figure(job, step, l, out.points, of));
   }

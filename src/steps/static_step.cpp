@@ -146,6 +146,7 @@ class StaticRun {
   analysis::EquilibriumOptions options_;
   analysis::Equilibrium found_;
   double load_ = 1.0;
+  std::optional<analysis::SteadySystem> turning_;  ///< for frames of a path
   std::optional<results::PathRecord> path_;
   std::optional<analysis::LoadPathResult> followed_;
   std::vector<std::string> notes_;
@@ -193,23 +194,28 @@ void StaticRun::follow_path() {
 void StaticRun::write_point(const analysis::LoadPathPoint& p) {
   path_->add(problem_, p);
   if (!frames_.any()) return;
-  problem_.workspace().context.load = p.load;
+  if (!turning_) turning_.emplace(job_.system(), job_.steady_rotation_of(state_));
+  turning_->set_load(p.load);
+  VecX reactions(job_.system().size());
+  if (!turning_->residual(p.state->frames, state_.speed, p.state->q, reactions)) return;
+  const results::MeanLoads loads =
+      results::calc_mean_loads(job_, *turning_, *p.state, state_.speed, reactions);
+  const system::Workspace& nodes = problem_.workspace();
   const auto points =
-      assembly::calc_section_results(job_.model, job_.mesh, job_.built, problem_.workspace());
-  frames_.write(job_, problem_, *p.state, p.load, points);
+      assembly::calc_section_results(job_.model, job_.mesh, job_.built, nodes, loads.elements);
+  frames_.write(job_, nodes, p.load, loads, points);
 }
 
-/// Node states, reactions and energy of the state found.
+/// Node states of the state found.
 void StaticRun::evaluate() {
   const system::State& x = state_.state;
-  VecX r(job_.system().size());
   problem_.frames = x.frames;
-  problem_.workspace().context.load = load_;
-  problem_.workspace().context.whole_turn = job_.steady_rotation_of(state_).mean;
-  if (!problem_.residual(x.t, x.q, x.v, x.a, r))
+  system::Workspace& nodes = problem_.workspace();
+  nodes.context.load = load_;
+  nodes.context.whole_turn = job_.steady_rotation_of(state_).mean;
+  if (!job_.system().evaluate_nodes(nodes, x.frames, x.t, x.q, x.v, x.a))
     throw run_error("R11",
                     fmt::format("step '{}': the state found cannot be evaluated", step_.name), {});
-  problem_.power(x.t, x.q, x.v, x.a, r);
 }
 
 /// Whether it is stable, and what its results are.
@@ -217,8 +223,8 @@ void StaticRun::judge() {
   const system::State& x = state_.state;
   analysis::SteadySystem turning(job_.system(), job_.steady_rotation_of(state_));
   turning.set_load(load_);
-  const std::vector<results::SupportLoad> loads =
-      results::calc_support_loads(job_, turning, x, state_.speed, found_.reactions);
+  const results::MeanLoads loads =
+      results::calc_mean_loads(job_, turning, x, state_.speed, found_.reactions);
   tangent_ = results::judge_state(turning, x, state_.speed, found_.holds(), true);
   results::add_stability(summary(), tangent_, state_.speed);
   results::warn_of_unstable(job_, step_.name, tangent_, state_.speed);
@@ -228,7 +234,8 @@ void StaticRun::judge() {
                                                  x.frames, x.q, tangent_.shape));
   results_ = results::make_static_results(job_, step_.name, problem_, loads, found_.reactions,
                                           found_.spin_holds, summary());
-  if (!path_ && frames_.any()) frames_.write(job_, problem_, x, x.t, results_.points);
+  if (!path_ && frames_.any())
+    frames_.write(job_, problem_.workspace(), x.t, loads, results_.points);
   frames_.end();
 }
 
