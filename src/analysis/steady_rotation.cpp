@@ -300,7 +300,10 @@ void SteadySystem::sort_terms() {
     // rest a spring against the twist holds one, which turning it would wind up
     std::vector<Index> touched;
     terms[k]->list_nodes(touched);
-    if (!(sees && running_.mean) && touched.size() > terms[k]->count()) blind_.push_back(k);
+    if (!(sees && running_.mean) && touched.size() > terms[k]->count()) {
+      blind_.push_back(k);
+      if (!is_shaft_at_angle(*terms[k], mean)) without_shafts_.push_back(k);
+    }
     // a twist is measured from the steady turn: it has no mean over angles that wind it up
     const bool winds = terms[k]->depends(mean).angle == system::twist_angle;
     if (sees && !winds)
@@ -317,6 +320,15 @@ void SteadySystem::sort_terms() {
   }
   of_turning_smooth_ = system_.blocks_of(turning_smooth_);
   set_apart_asked_terms();
+}
+
+bool SteadySystem::is_shaft_at_angle(const system::Term& term, const system::Context& mean) const {
+  const bool of_shaft =
+      term.family() == system::Family::shaft || term.family() == system::Family::damping;
+  if (!of_shaft || term.depends(mean).angle.form != system::SeenAngle::Form::each) return false;
+  std::vector<Index> touched;
+  term.list_nodes(touched);
+  return std::all_of(touched.begin(), touched.end(), [&](Index i) { return spinning_[at(i)]; });
 }
 
 void SteadySystem::set_apart_asked_terms() {

@@ -106,6 +106,13 @@ class SteadySystem {
     workspace_.context.averaged = running_.mean;
     return inside;
   }
+  /// At rest: shafts that know their angle (a bow, a section that is not round, a crack) are among
+  /// what blind_tangent() sees. Their weight turns them, and nothing else does.
+  bool shafts_see_angle() const { return without_shafts_.size() < blind_.size(); }
+  /// K of blind_tangent() without them.
+  bool tangent_without_shafts(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+    return evaluate_tangent(f, Omega, q, 0.0, out, without_shafts_);
+  }
   /// f_k of orders(): complex amplitudes of what stands in the residual; the response solves S a =
   /// -f.
   bool forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out);
@@ -148,6 +155,8 @@ class SteadySystem {
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
   void find_spinning();
   void sort_terms();
+  /// Elements of shafts that turn as a whole, and see at what angle they stand.
+  bool is_shaft_at_angle(const system::Term& term, const system::Context& mean) const;
   void set_apart_asked_terms();
   /// Multiples of the angle that the terms declare, at least 2.
   Index most_harmonics() const;
@@ -165,7 +174,7 @@ class SteadySystem {
   std::string unsteady_joint_;      ///< of lines that do not turn as one; empty: none
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
-  Terms blind_, all_;
+  Terms blind_, without_shafts_, all_;
   /// Of other_ and of turning_: those that answer differently to motions of another frequency or rate
   /// (tables, hysteretic damping); the rest.
   Terms asked_, steady_, turning_asked_, turning_steady_;

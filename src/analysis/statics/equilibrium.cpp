@@ -169,9 +169,18 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
                std::abs(motions.ke[at(l)][k]) > 1e-9 * motions.size[at(l)][k];
       if (meet) motions.group[at(motions.root(l))] = motions.root(m);
     }
+  // At rest the weight of a bow or a flat would turn a free rotor, as that of an unbalance would: all
+  // stand where they are. On joints a shaft may hold another one by its stiffness.
+  std::optional<SpinMotions> without_shafts;
+  if (running_.shafts_see_angle() && sys.followers().empty() &&
+      running_.tangent_without_shafts(s.frames, Omega, s.q, matrices_)) {
+    without_shafts = spin_motions();
+    without_shafts->group = motions.group;
+  }
   for (Index g = 0; g < L; ++g) {
     if (motions.root(g) != g) continue;
-    const Index lead = freely_turning(motions, g);
+    Index lead = freely_turning(motions, g);
+    if (lead < 0 && without_shafts) lead = freely_turning(*without_shafts, g);
     if (lead < 0) continue;
     spin_holds_.push_back(lead);
     free_[at(lead)] = 0;
