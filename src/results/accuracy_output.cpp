@@ -273,12 +273,14 @@ void AccuracyOutput::judge_energy(TransientEnd& end, std::vector<std::string>& w
       measure);
   // an amplitude error of a percent is an energy error of two
   constexpr double doubtful = 0.02;
-  const bool rounding = energy_.worst_defect() <= energy_.rounding();
+  // 4e-21 J: the thermal energy of one motion. Less is rounding of a rotor at rest
+  const double nothing = std::max(energy_.rounding(), 4e-21);
+  const bool rounding = energy_.worst_defect() <= nothing;
   if (energy_.known() && defect > doubtful && rounding)
     end.section.text += fmt::format(
         " Rounding of the energies and of the drives' torques alone may reach {:.2g} J: here the "
         "balance says nothing of the amplitudes.",
-        energy_.rounding());
+        nothing);
   if (!energy_.known())
     warnings.push_back(
         "the motion leaves the range in which the energies of its supports are defined (a film's "

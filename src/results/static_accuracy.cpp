@@ -1,3 +1,4 @@
+#include <analysis/statics/definiteness.hpp>
 #include <analysis/statics/equilibrium.hpp>
 #include <assembly/build_system.hpp>
 #include <meshes/halved.hpp>
@@ -12,11 +13,24 @@
 namespace whirl::results {
 namespace {
 
+/// m: displacements below it are none. Ten times what an equilibrium is found to, or what a bow of half a
+/// sine gives along the shaft when the mean over a turn holds it straight: pi^2 A^2/(4 L).
+double least_deflection(const run::Job& job) {
+  double out = 1e-14 * analysis::model_length(job.system());
+  for (const model::Shaft& s : job.model.shafts) {
+    const double bow = std::max(s.bow.amount, s.bow.initial);
+    if (bow > 0) out = std::max(out, 0.25 * pi * pi * bow * bow / s.length());
+  }
+  return out;
+}
+
 /// The equilibrium on the halved mesh nearest the one found.
 std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
                                                const meshes::Halved& mesh, const run::Job& job,
-                                               const run::StepState& found, double load) {
-  analysis::SteadySystem turning(fine, job.steady_rotation_of(found));
+                                               const run::StepState& found,
+                                               const analysis::SteadyRotation& running,
+                                               double load) {
+  analysis::SteadySystem turning(fine, running);
   turning.set_load(load);
   analysis::EquilibriumOptions options;
   options.chart_change = job.model.chart_change;
@@ -31,13 +45,15 @@ std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
 }  // namespace
 
 std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::string& step,
-                                                const run::StepState& equilibrium, double load) {
+                                                const run::StepState& equilibrium,
+                                                const analysis::SteadyRotation& turning,
+                                                double load) {
   const system::State& own = equilibrium.state;
   if (job.mesh.elements.empty() || own.frames.moved()) return std::nullopt;
   const meshes::Halved fine =
       meshes::halve(job.mesh, std::vector<bool>(job.mesh.lines.size(), true));
   const assembly::Built built = assembly::build_system(job.model, fine.mesh, step);
-  const auto found = settle_on(built.system, fine, job, equilibrium, load);
+  const auto found = settle_on(built.system, fine, job, equilibrium, turning, load);
   if (!found || found->state.frames.moved()) return std::nullopt;
   StaticAccuracy out;
   double most = 0;  // between the nodes of the own mesh too
@@ -53,7 +69,7 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
         out.shaft = line.name;
       }
     }
-  if (!(most > 0.0)) return std::nullopt;
+  if (!(most > least_deflection(job))) return std::nullopt;
   out.error *= meshes::error_of_change / most;
   if (out.shaft.empty()) out.shaft = job.mesh.lines.front().name;
   return out;
@@ -61,9 +77,10 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
 
 bool has_deflections(const run::Job& job, const run::StepState& equilibrium) {
   if (job.mesh.elements.empty()) return false;
+  const double least = least_deflection(job);
   for (const meshes::Line& line : job.mesh.lines)
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
-      if (!equilibrium.state.q.segment<3>(6 * n).isZero(0.0)) return true;
+      if (equilibrium.state.q.segment<3>(6 * n).norm() > least) return true;
   return false;
 }
 

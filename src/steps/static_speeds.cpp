@@ -261,7 +261,8 @@ void SpeedSweep::judge_mesh(double Omega, const run::StepState& state) {
   if (Omega != speeds_.front() && Omega != speeds_.back() && Omega != speeds_[speeds_.size() / 2])
     return;
   if (!results::has_deflections(job_, state)) return;
-  const auto accuracy = results::static_mesh_error(job_, step_.name, state);
+  const auto accuracy =
+      results::static_mesh_error(job_, step_.name, state, s_.linear.running().running());
   if (!accuracy) {
     ++mesh_not_judged_;
     return;

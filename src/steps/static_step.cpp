@@ -242,7 +242,8 @@ void StaticRun::judge() {
 /// What the elements do to the equilibrium; of a path to the last one, under the load it stands at.
 void StaticRun::judge_mesh() {
   if (!results::has_deflections(job_, state_)) return;
-  const auto accuracy = results::static_mesh_error(job_, step_.name, state_, load_);
+  const auto accuracy =
+      results::static_mesh_error(job_, step_.name, state_, job_.steady_rotation_of(state_), load_);
   std::string said = accuracy ? results::report_static_accuracy(job_, step_.name, *accuracy)
                               : results::report_no_static_accuracy(job_, step_.name);
   if (path_) said += fmt::format(", at load factor {:.6g}", load_);
