@@ -326,9 +326,13 @@ bool SteadySystem::is_shaft_at_angle(const system::Term& term, const system::Con
   const bool of_shaft =
       term.family() == system::Family::shaft || term.family() == system::Family::damping;
   if (!of_shaft || term.depends(mean).angle.form != system::SeenAngle::Form::each) return false;
+  // an element of a shaft that stands touches no node of one that turns
   std::vector<Index> touched;
   term.list_nodes(touched);
-  return std::all_of(touched.begin(), touched.end(), [&](Index i) { return spinning_[at(i)]; });
+  const std::size_t nodes = touched.size() / std::max<std::size_t>(term.count(), 1);
+  for (std::size_t k = 0; k < touched.size(); ++k)
+    if (spinning_[at(touched[k])] != spinning_[at(touched[k - k % nodes])]) return false;
+  return true;
 }
 
 void SteadySystem::set_apart_asked_terms() {

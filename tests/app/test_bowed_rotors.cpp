@@ -192,6 +192,16 @@ TEST(BowedRotors, AtRestTheyStayAtTheirAngle) {
     EXPECT_FALSE(run.says("W08")) << run.log;
     EXPECT_NEAR(sag(run), sag(straight) + up, 1e-8) << bow;
   }
+  // beside a casing whose section is not round either
+  const std::string casing = fmt::format(
+      "[[shaft]]\nname = \"casing\"\nmaterial = \"steel\"\nrotating = "
+      "false\n[[shaft.section]]\nname = "
+      "\"c\"\nlength = \"1 m\"\n{}[[bearing]]\nat = \"casing:start\"\ntype = \"rigid\"\n"
+      "directions = [\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"]\n",
+      flat);
+  const DeckRun beside(rotor(bows[1], round_shaft, still("0 rpm") + casing));
+  ASSERT_EQ(beside.exit, 0) << beside.log;
+  EXPECT_NEAR(sag(beside), sag(straight) + half_sine, 1e-8);
   const DeckRun cold(
       rotor(bows[3], round_shaft,
             "type = \"transient\"\nduration = \"5 ms\"\ninitial_speed = \"0 rpm\"\n"));
