@@ -196,6 +196,19 @@ void read_drawn(const std::string& text, const std::string& from, Factor& f) {
   if (unit != f.unit)
     throw bad_factor(text, fmt::format("units '{}' and '{}' in one key", f.unit, unit),
                      "write both distributions in one unit");
+  // what is never drawn cannot count
+  constexpr double negligible = 1e-6;
+  const auto& bounds = f.drawn->parameters;
+  const bool endless =
+      f.drawn->law == Distribution::Law::normal || f.drawn->law == Distribution::Law::lognormal;
+  if (endless) return;
+  const double missed =
+      normal_probability(f.score(bounds.front())) + normal_probability(-f.score(bounds.back()));
+  if (missed > negligible)
+    throw bad_factor(
+        text,
+        fmt::format("'{}' never draws {:.2g} of what the first distribution holds", from, missed),
+        "draw from a distribution that reaches as far");
 }
 
 }  // namespace
@@ -306,6 +319,26 @@ double Distribution::at_quantile(double p) const {
     }
     case Law::normal: return a[0] + a[1] * normal_quantile(p);
     case Law::lognormal: return a[0] * std::exp(a[1] * normal_quantile(p));
+    case Law::values: break;
+  }
+  return nan;
+}
+
+double Distribution::score(double x) const {
+  const auto& a = parameters;
+  const auto of_probability = [](double p) {
+    return p <= 0 ? -infinity : p >= 1 ? infinity : normal_quantile(p);
+  };
+  switch (law) {
+    case Law::uniform: return of_probability((x - a[0]) / (a[1] - a[0]));
+    case Law::loguniform: return of_probability(std::log(x / a[0]) / std::log(a[1] / a[0]));
+    case Law::triangular: {
+      const double width = a[2] - a[0];
+      if (x < a[1]) return of_probability((x - a[0]) * (x - a[0]) / (width * (a[1] - a[0])));
+      return -of_probability((a[2] - x) * (a[2] - x) / (width * (a[2] - a[1])));
+    }
+    case Law::normal: return (x - a[0]) / a[1];
+    case Law::lognormal: return std::log(x / a[0]) / a[1];
     case Law::values: break;
   }
   return nan;
@@ -477,15 +510,27 @@ double Design::weight(std::int64_t run) const {
   if (!weighted()) return 1.0;
   const std::vector<double> q = quantiles(run % samples_);
   double w = 1.0;
-  std::size_t dimension = 0;
+  VecX drawn(static_cast<Index>(q.size())), wanted(static_cast<Index>(q.size()));
+  Index dimension = 0;
   for (const Factor& f : factors_) {
     if (!f.random()) continue;
-    const double p = q[dimension++];
-    if (!f.drawn) continue;
-    const double x = f.drawn->at_quantile(p);
-    w *= f.density(x) / f.drawn->density(x);
+    const double p = q[at(dimension)];
+    drawn[dimension] = wanted[dimension] = normal_quantile(p);
+    if (f.drawn) {
+      const double x = f.drawn->at_quantile(p);
+      w *= f.density(x) / f.drawn->density(x);
+      wanted[dimension] = f.score(x);
+    }
+    ++dimension;
   }
-  return w;
+  if (!(w > 0.0) || cholesky_.size() == 0) return w;
+  // densities of correlated keys are those of the keys alone times that of the Gaussian copula
+  return w * std::exp(log_copula(wanted) - log_copula(drawn));
+}
+
+double Design::log_copula(const VecX& score) const {
+  const VecX independent = cholesky_.triangularView<Eigen::Lower>().solve(score);
+  return 0.5 * (score.squaredNorm() - independent.squaredNorm());
 }
 
 }  // namespace whirl::sweep

@@ -21,6 +21,8 @@ struct Distribution {
   /// Value at a quantile in (0, 1).
   double at_quantile(double p) const;
   double density(double x) const;
+  /// The value of a standard normal variable at the quantile of x; infinite where the density is 0.
+  double score(double x) const;
 };
 
 /// One key of the deck and the values it takes.
@@ -100,6 +102,9 @@ class Design {
   std::int64_t combinations_ = 1, samples_ = 1, base_ = 1;
   Sampling sampling_ = Sampling::latin_hypercube;
   std::uint64_t seed_ = 0;
+  /// Logarithm of the Gaussian copula's density, but for a constant.
+  double log_copula(const VecX& score) const;
+
   MatX cholesky_;  ///< of the correlations, lower; empty: none
 };
 

@@ -96,7 +96,10 @@ TEST(SweepDesign, RefusesSchemesAndCorrelationsThatCannotBe) {
   EXPECT_THROW(with({{"x", "y", 0.9}, {"y", "z", 0.9}, {"x", "z", -0.9}}), Error);
   for (const char* text : {"x=0.5", "x,y", "x,y=1", "x,x=0.5", "x,y=0.5 mm", "x,y,z=0.1"})
     EXPECT_THROW(read_correlation(text), Error) << text;
-  for (const char* text : {"a=normal(0, 1) drawn 1:2:3", "a=normal(0 um, 1 um) drawn normal(1, 1)"})
+  for (const char* text :
+       {"a=normal(0, 1) drawn 1:2:3", "a=normal(0 um, 1 um) drawn normal(1, 1)",
+        "a=uniform(5, 15) drawn uniform(8, 12)", "a=normal(10, 2) drawn uniform(8, 12)",
+        "a=triangular(1, 2, 6) drawn loguniform(1.5, 9)"})
     EXPECT_THROW(read_factor(text), Error) << text;
 }
 

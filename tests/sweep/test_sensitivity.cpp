@@ -131,6 +131,32 @@ TEST(WeightedSamples, FindARareTail) {
   EXPECT_EQ(plain.weight(7), 1.0);
 }
 
+// Normal variables of correlation 0.6: P(x > 1.5 and y > 1) is 0.0384744466 (bivariate normal
+// integral). The samples are of other distributions.
+TEST(WeightedSamples, OfCorrelatedKeysCountByTheirJointDensities) {
+  const Design d({read_factor("a.x=normal(0, 1) drawn normal(1, 1.3)"),
+                  read_factor("a.y=normal(0, 1) drawn uniform(-5, 5)")},
+                 40000, Sampling::random, 3, {read_correlation("a.x,a.y=0.6")});
+  const std::vector<double> hits = runs_of(
+      d, [](const std::vector<double>& x) { return x[0] > 1.5 && x[1] > 1 ? 1.0 : 0.0; });
+  double sum = 0, of_hits = 0;
+  for (std::int64_t run = 0; run < d.runs(); ++run) {
+    sum += d.weight(run);
+    of_hits += d.weight(run) * hits[static_cast<std::size_t>(run)];
+  }
+  EXPECT_NEAR(sum / static_cast<double>(d.runs()), 1.0, 0.02);
+  EXPECT_NEAR(of_hits / sum, 0.0384744466, 0.03 * 0.0384744466);
+}
+
+TEST(Distributions, ScoresAreThoseOfTheirQuantiles) {
+  for (const char* law : {"uniform(2, 5)", "loguniform(2, 5)", "triangular(1, 2, 6)",
+                          "triangular(1, 1, 6)", "normal(3, 2)", "lognormal(4, 0.3)"}) {
+    const Factor f = read_factor(std::string("a.x=") + law);
+    for (const double p : {1e-6, 0.02, 0.2, 0.5, 0.9, 0.999})
+      EXPECT_NEAR(f.score(f.at_quantile(p)), normal_quantile(p), 1e-6) << law << " at " << p;
+  }
+}
+
 TEST(WeightedSamples, OfEqualWeightAreOrdinaryOnes) {
   const std::vector<double> x{3, 1, 2, nan, 5, 4}, one(6, 1.0);
   const WeightedStatistics w = weighted_statistics(x, one);
