@@ -10,41 +10,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace whirl::steps {
 
 namespace {
 
-/// Names of what stands at the nodes: disks for kinetic energy, bearings for strain energy.
-struct NodeNames {
-  std::vector<std::string> disk, bearing;
-  explicit NodeNames(const run::Job& job)
-      : disk(job.mesh.nodes.size()),
-        bearing(job.mesh.nodes.size()) {
-    const auto add = [](std::vector<std::string>& to, Index node, const std::string& name) {
-      if (node < 0) return;
-      std::string& s = to[static_cast<std::size_t>(node)];
-      s += (s.empty() ? "" : ", ") + name;
-    };
+/// Names of what has a part's energy: disks at nodes, bearings at nodes or between two.
+class PartNames {
+ public:
+  explicit PartNames(const run::Job& job) {
     for (const model::Disk& d : job.model.disks)
-      add(disk, job.mesh.place(d.at).node, d.name);
+      add(disks_, {job.mesh.place(d.at).node, -1}, d.name);
     for (std::size_t i = 0; i < job.mesh.bearings.size(); ++i) {
       const meshes::BearingNodes& b = job.mesh.bearings[i];
-      add(bearing, b.shaft.node, job.model.bearings[i].name);
-      if (b.other.node != b.shaft.node) add(bearing, b.other.node, job.model.bearings[i].name);
-      add(bearing, b.pedestal, job.model.bearings[i].name + " pedestal");
+      const std::string& name = job.model.bearings[i].name;
+      const Index other = b.other.node;
+      const bool on_the_shaft_alone = other < 0 || other == b.shaft.node || other == b.ground;
+      add(bearings_, {b.shaft.node, on_the_shaft_alone ? -1 : other}, name);
+      if (b.pedestal >= 0) add(bearings_, {b.pedestal, -1}, name + " pedestal");
+      if (b.ground >= 0) grounds_.insert(b.ground);
     }
   }
+  /// Empty: none is known.
+  std::string of(const analysis::EnergyPart& p, bool kinetic) const {
+    const Names& all = kinetic ? disks_ : bearings_;
+    const auto ground = [this](Index n) { return grounds_.count(n) > 0; };
+    const Ends ends = ground(p.other)  ? Ends{p.node, -1}
+                      : ground(p.node) ? Ends{p.other, -1}
+                                       : Ends{p.node, p.other};
+    const auto it = all.find(sorted(ends));
+    return it == all.end() ? std::string() : it->second;
+  }
+
+ private:
+  using Ends = std::pair<Index, Index>;
+  using Names = std::map<Ends, std::string>;
+  static Ends sorted(Ends e) {
+    if (e.first < e.second) std::swap(e.first, e.second);
+    return e;
+  }
+  static void add(Names& to, Ends ends, const std::string& name) {
+    if (ends.first < 0) return;
+    std::string& s = to[sorted(ends)];
+    s += (s.empty() ? "" : ", ") + name;
+  }
+  Names disks_, bearings_;
+  std::set<Index> grounds_;
 };
 
 /// Two tables: every part of every mode (a file), and shares by shaft, disk and bearing (the
 /// report).
 void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::WhirlMode>& modes) {
-  const NodeNames names(s.job);
+  const PartNames names(s.job);
   io::Table all, sums;
   all.title = "Energy of the modes by element";
-  all.columns = {{"mode", "-", ""},     {"energy", "-", "strain or kinetic"}, {"part", "-", ""},
-                 {"from", "-", "node"}, {"to", "-", "node, of an element"},   {"share", "%", ""}};
+  all.columns = {
+      {"mode", "-", ""},     {"energy", "-", "strain or kinetic"},        {"part", "-", ""},
+      {"from", "-", "node"}, {"to", "-", "node, of what is between two"}, {"share", "%", ""}};
   sums.title = "Energy of the modes by part";
   std::vector<std::pair<std::string, std::vector<double>>> columns;  // in order of appearance
   const auto column = [&](const std::string& name) -> std::vector<double>& {
@@ -53,7 +78,6 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
     columns.emplace_back(name, std::vector<double>(modes.size(), 0.0));
     return columns.back().second;
   };
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::ModeEnergy e = analysis::energy_distribution(s.linear, modes[k].x);
     const system::System& sys = s.linear.system();
@@ -62,10 +86,9 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
         all.add({static_cast<int>(k + 1), kinetic ? "kinetic" : "strain", p.kind,
                  sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(),
                  100 * p.share});
-        const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
         const bool shaft = p.family == system::Family::shaft;
-        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty();
-        const std::string part = shaft ? "shaft" : known ? own[at(p.node)] : p.kind;
+        const std::string own = shaft ? "shaft" : names.of(p, kinetic);
+        const std::string& part = own.empty() ? p.kind : own;
         column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
       }
   }

@@ -4,8 +4,9 @@
 // Strain energy of a shaft element between nodes i and j: with G the rigid motion that carries node
 // i's unknowns to node j, the part of x_j that deforms the element is e = x_j - G x_i, and its
 // energy 1/2 e^H D e with D = -K_ij^T G^-1, for K of an element does not see rigid motions. So the
-// assembled matrix of all elements is enough. Everything else (bearings, springs) keeps its energy
-// at its nodes. Taken about the equilibrium at rest (v = 0): circulatory parts store nothing.
+// assembled matrix of all elements is enough. Supports between two nodes (a rotor and its pedestal,
+// two shafts) are taken likewise; what their forces then leave at a node is a spring to the ground.
+// Inner states of supports keep their energy at their nodes. Taken about the equilibrium at rest (v = 0): circulatory parts store nothing.
 #pragma once
 #include <analysis/spectra/whirl_modes.hpp>
 
@@ -17,7 +18,7 @@ namespace whirl::analysis {
 struct EnergyPart {
   system::Family family = system::Family::body;
   std::string kind;            ///< of the batch, for display: "shaft elements", "rigid disks"
-  Index node = 0, other = -1;  ///< other >= 0: the element between the two
+  Index node = 0, other = -1;  ///< other >= 0: what is between the two
   double share = 0;            ///< of the whole strain or kinetic energy
 };
 
