@@ -60,8 +60,8 @@ struct Worst {
   double stress = 0, torque = 0, speed = 0, frequency = 0;  ///< Pa, N m, rad/s, rad/s
   Index element = -1;
   bool unbounded = false;
-  bool known = false;   ///< some section has diameters
-  double coupling = 0;  ///< N m, the largest in a coupling
+  bool known = false;                       ///< some section has diameters
+  double coupling = 0, coupling_speed = 0;  ///< N m, the largest in a coupling, and where, rad/s
   std::string coupling_name;
 };
 
@@ -440,6 +440,7 @@ void TorsionalReport::look(const std::vector<std::vector<Complex>>& elements,
     const double torque = amplitude(couplings, i);
     if (!(torque > worst.coupling)) continue;
     worst.coupling = torque;
+    worst.coupling_speed = Omega;
     worst.coupling_name = s_.job.model.bearings[i].name;
   }
 }
@@ -491,30 +492,35 @@ void TorsionalReport::add_stresses() {
                {"torque in the shaft", "N m", "0 to peak"},
                {"shear stress", "MPa", "0 to peak, with the concentration"},
                {"coupling", "-", "with the largest torque"},
-               {"torque in the coupling", "N m", "0 to peak"}};
-  t.nan_means = "a resonance without damping, or no section has diameters";
+               {"torque in the coupling", "N m", "0 to peak"},
+               {"speed of that torque", "rpm", "of the reference"}};
+  t.nan_means = "a resonance without damping, or no section has diameters, or there is no coupling";
   for (const model::ApiTorque& torque : law_.torques) {
     const Worst w = respond(torque);
     std::string shaft;
-    double from = 0, to = 0;
+    double from = nan, to = nan, speed = nan, frequency = nan;
     if (w.element >= 0) {
       const meshes::Element& e = s_.job.mesh.elements[static_cast<std::size_t>(w.element)];
       shaft = s_.job.mesh.lines[static_cast<std::size_t>(e.line)].name;
       from = e.s1;
       to = e.s2;
+      speed = w.speed;
+      frequency = w.frequency;
     }
     double amplitude = torque.amplitude;
     for (const model::ApiHarmonic& h : torque.harmonics)
       amplitude = std::max(amplitude, h.amplitude);
     const double stress = w.known && !w.unbounded ? 1e-6 * w.stress : nan;
-    t.add({torque.name, amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to,
-           std::isnan(stress) ? nan : w.torque, stress, w.coupling_name,
-           w.unbounded ? nan : w.coupling});
+    const bool coupled = !w.unbounded && !w.coupling_name.empty();
+    t.add({torque.name, amplitude, to_rpm(speed), to_hz(frequency), shaft, from, to,
+           std::isnan(stress) ? nan : w.torque, stress, w.coupling_name, coupled ? w.coupling : nan,
+           coupled ? to_rpm(w.coupling_speed) : nan});
     const bool judged = law_.stress_limit > 0 && !std::isnan(stress);
     Check c = judged ? results::compare("torsional stress", stress, "MPa", Check::Rule::at_most,
                                         1e-6 * law_.stress_limit)
                      : results::compare("torsional stress", stress, "MPa", Check::Rule::none, nan);
-    c.where = fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(w.speed));
+    c.where = w.element >= 0 ? fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(speed))
+                             : torque.name;
     c.source = law_.stress_limit > 0 ? source("stress_limit") : "";
     c.remark = without_stresses();
     c.figure = s_.file("interference");

@@ -133,6 +133,14 @@ class Responder {
   std::array<std::optional<analysis::HarmonicResponder>, 2> solver_;
 };
 
+/// Whether a line has elements, in which alone a torque is known.
+std::vector<bool> elastic_lines(const meshes::Mesh& mesh) {
+  std::vector<bool> elastic(mesh.lines.size(), false);
+  for (const meshes::Element& e : mesh.elements)
+    elastic[static_cast<std::size_t>(e.line)] = true;
+  return elastic;
+}
+
 /// A harmonic response on its way: forces, points of the grid, peaks.
 class HarmonicRun {
  public:
@@ -358,9 +366,12 @@ void HarmonicRun::add_table() {
   for (const analysis::Measurement& m : options_.outputs)
     for (const char* c : {"x", "y", "z"})
       t.columns.push_back({fmt::format("{} {}", m.name, c), "N", "0-peak"});
-  for (const meshes::Line& l : job_.mesh.lines)
-    t.columns.push_back(
-        {fmt::format("largest torque in {}", l.name), "N.m", "0-peak, in any element"});
+  // rigid lines have none
+  const std::vector<bool> elastic = elastic_lines(job_.mesh);
+  for (std::size_t l = 0; l < elastic.size(); ++l)
+    if (elastic[l])
+      t.columns.push_back({fmt::format("largest torque in {}", job_.mesh.lines[l].name), "N.m",
+                           "0-peak, in any element"});
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const FrequencyPoint& x = points_[k];
     std::vector<io::Table::Cell> row{to_rpm(x.Omega), to_hz(x.frequency)};
@@ -372,8 +383,8 @@ void HarmonicRun::add_table() {
     for (std::size_t m = 0; m < options_.outputs.size(); ++m)
       for (std::size_t c = 0; c < 3; ++c)
         row.emplace_back(std::abs(x.output[m][c]));
-    for (const double torque : torques_[k])
-      row.emplace_back(torque);
+    for (std::size_t l = 0; l < elastic.size(); ++l)
+      if (elastic[l]) row.emplace_back(torques_[k][l]);
     t.add(std::move(row));
   }
   s_.add_table("response", std::move(t), false);
@@ -614,13 +625,16 @@ void HarmonicRun::add_torsion_figure() {
   for (std::size_t p = 0; p < options_.probes.size(); ++p)
     twists.series.push_back(
         curve(options_.probes[p].name, [&](std::size_t k) { return twist(points_[k], p); }));
-  for (std::size_t l = 0; l < job_.mesh.lines.size(); ++l)
-    torques.series.push_back(
-        curve(job_.mesh.lines[l].name, [&](std::size_t k) { return torques_[k][l]; }));
+  const std::vector<bool> elastic = elastic_lines(job_.mesh);
+  for (std::size_t l = 0; l < elastic.size(); ++l)
+    if (elastic[l])
+      torques.series.push_back(
+          curve(job_.mesh.lines[l].name, [&](std::size_t k) { return torques_[k][l]; }));
   plot::Figure f;
   f.name = s_.file("torsion");
   f.title = "Torsional response";
-  f.axes = {std::move(twists), std::move(torques)};
+  f.axes = {std::move(twists)};
+  if (!torques.series.empty()) f.axes.push_back(std::move(torques));
   f.height = 540;
   s_.add_figure(std::move(f));
 }
