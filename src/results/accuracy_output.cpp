@@ -226,6 +226,7 @@ class AccuracyOutput final : public TransientOutput {
       std::vector<std::string> warnings;
       judge_energy(end, warnings);
       judge_steps(end, warnings);
+      judge_twist(end, warnings);
       judge_modes(end, warnings);
       for (const std::string& w : warnings)
         warn_of_step(end.job, end.step, w);
@@ -236,6 +237,7 @@ class AccuracyOutput final : public TransientOutput {
  private:
   void judge_energy(TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_steps(const TransientEnd& end, std::vector<std::string>& warnings) const;
+  void judge_twist(TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_modes(TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const;
   void judge_damping(TransientEnd& end, const std::vector<Contained>& modes, double speed,
@@ -308,6 +310,30 @@ void AccuracyOutput::judge_steps(const TransientEnd& end,
     warnings.push_back(fmt::format(
         "{:.0f} % of the steps were rejected: the model is not smooth at the scale of the steps",
         100.0 * (1.0 - accepted / all)));
+}
+
+/// Vibration of twist that the steps pass over: they are chosen for it only where it is asked for.
+void AccuracyOutput::judge_twist(TransientEnd& end, std::vector<std::string>& warnings) const {
+  const time::Statistics& s = end.result.statistics;
+  const double tolerance = end.law.integrator.tolerance;
+  // local errors grow with a power of the step, their sum with one more
+  constexpr double followed = 3e-3;
+  if (!(s.twist_error * tolerance > followed)) return;
+  end.summary["accuracy"]["twist, half its range [rad]"] = s.twist;
+  end.summary["accuracy"]["local error of twist / allowance"] = s.twist_error;
+  const std::string said = fmt::format(
+      "the steps do not follow the vibration of twist (half its range is {:.2g} rad; local errors "
+      "up "
+      "to {:.2g} times the allowance for {:.2g} of that)",
+      s.twist, s.twist_error, tolerance);
+  const std::string cure = end.law.integrator.dt > 0.0
+                               ? "try a smaller dt"
+                               : "a table 'torques' in the step makes them follow it";
+  // beside lateral motion, where nothing asks for torques, steps that pass over it are what is wanted
+  if (s.twists_alone)
+    warnings.push_back(said + ", and nothing else moves: " + cure);
+  else
+    end.section.text += fmt::format("\n\nNote: {}; {}.", said, cure);
 }
 
 /// What the mesh and the steps do to the modes at the end of the run.

@@ -1,4 +1,5 @@
 #include <run/job.hpp>
+#include <assembly/tied_lines.hpp>
 #include <run/progress.hpp>
 #include <run/support_diagnosis.hpp>
 
@@ -151,39 +152,12 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
   return s;
 }
 
-namespace {
-
-bool ties_spins(const model::Joint& j) {
-  return j.to && (j.kind == model::JointKind::rigid || j.kind == model::JointKind::slider ||
-                  j.kind == model::JointKind::universal);
-}
-
-/// For each line the first of those that gears, couplings and joints turn in proportion to it.
-std::vector<std::size_t> tied_lines(const model::Model& m) {
-  std::vector<std::size_t> first(m.shafts.size());
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto tie = [&](std::size_t a, std::size_t b) {
-    if (!m.shafts[a].rotating || !m.shafts[b].rotating) return;
-    const auto [to, from] = std::minmax({first[a], first[b]});
-    std::replace(first.begin(), first.end(), from, to);
-  };
-  for (const model::Bearing& b : m.bearings) {
-    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
-    if (pair && b.to) tie(b.at.shaft, b.to->shaft);
-  }
-  for (const model::Joint& j : m.joints)
-    if (ties_spins(j)) tie(j.at.shaft, j.to->shaft);
-  return first;
-}
-
-}  // namespace
-
 std::vector<double> Job::mean_spins(const StepState& start) const {
   std::vector<double> spin;
   for (const meshes::Line& line : mesh.lines)
     spin.push_back(start.state.v[6 * line.first_node + system::spin_phi]);
   // What meshes turns in proportion; the rest of what it does at a moment is vibration of twist.
-  const std::vector<std::size_t> tied = tied_lines(model);
+  const std::vector<std::size_t> tied = assembly::tied_lines(model);
   const auto of_reference = static_cast<std::size_t>(mesh.nodes[at(reference())].line);
   for (std::size_t group = 0; group < tied.size(); ++group) {
     double along = 0.0, size = 0.0;
@@ -202,6 +176,24 @@ std::vector<double> Job::mean_spins(const StepState& start) const {
       if (tied[l] == group) spin[l] = along / size * model.shafts[l].speed_ratio;
   }
   return spin;
+}
+
+std::vector<time::TwistGroup> Job::twisting_shafts() const {
+  const std::vector<std::size_t> tied = assembly::tied_lines(model);
+  std::vector<time::TwistGroup> groups(tied.size());
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const bool alone = std::count(tied.begin(), tied.end(), tied[l]) == 1;
+    const double ratio =
+        alone ? 1.0 : model.shafts[l].speed_ratio / model.shafts[tied[l]].speed_ratio;
+    if (!std::isfinite(ratio) || ratio == 0.0) continue;
+    const meshes::Line& line = mesh.lines[l];
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      groups[tied[l]].unknowns.push_back(6 * n + system::spin_phi);
+      groups[tied[l]].ratios.push_back(ratio);
+    }
+  }
+  std::erase_if(groups, [](const time::TwistGroup& g) { return g.unknowns.size() < 2; });
+  return groups;
 }
 
 analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {

@@ -14,6 +14,7 @@
 #include <meshes/scene.hpp>
 #include <model/model.hpp>
 #include <system/system.hpp>
+#include <time/twist_scale.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -81,6 +82,8 @@ struct Job {
   /// Spin of each line, rad/s; of lines that gears, couplings or joints tie in proportion, about which
   /// they vibrate.
   std::vector<double> mean_spins(const StepState& start) const;
+  /// The nodes of shafts that turn in proportion, group by group: what vibrations of twist are between.
+  std::vector<time::TwistGroup> twisting_shafts() const;
   /// How the lines turn in a state.
   analysis::SteadyRotation steady_rotation_of(const StepState& start) const;
   /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts,

@@ -32,6 +32,26 @@ bool only_films(const run::Job& job) {
          std::none_of(job.model.bearings.begin(), job.model.bearings.end(), comes_and_goes);
 }
 
+/// Shafts that gears, couplings or joints turn together.
+bool several_lines(const run::Job& job, const time::TwistGroup& g) {
+  const auto line = [&job](Index unknown) { return job.mesh.nodes[at(unknown / 6)].line; };
+  return line(g.unknowns.front()) != line(g.unknowns.back());
+}
+
+/// Torques in shafts are asked for, or a vibration of twist is what the motion begins with.
+bool asks_for_twist(const run::Job& job, const model::TransientStep& law,
+                    const std::vector<time::TwistGroup>& groups) {
+  if (law.torques) return true;
+  using Start = model::TransientStep::Start;
+  if (law.start == Start::mode && law.mode_kind == model::MotionKind::torsional) return true;
+  const bool joined = std::any_of(groups.begin(), groups.end(),
+                                  [&job](const auto& g) { return several_lines(job, g); });
+  const std::vector<std::string>& written = job.model.output.quantities;
+  return std::any_of(written.begin(), written.end(), [joined](const std::string& q) {
+    return q == "shaft_torque" || (joined && (q == "joints" || q == "bearing_moment"));
+  });
+}
+
 analysis::TransientOptions transient_options(const run::Job& job, const model::TransientStep& law,
                                              double t0) {
   analysis::TransientOptions t;
@@ -58,6 +78,8 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   for (const meshes::Line& l : job.mesh.lines)
     length = std::max(length, l.length);
   if (length > 0.0) o.scales.length = length;
+  o.scales.twists = job.twisting_shafts();
+  o.scales.follow_twist = asks_for_twist(job, law, o.scales.twists);
   o.linearize_inside = only_films(job);
   for (const auto& f : job.built.fine) {
     if (job.system().node(f.node).scalar) {
@@ -251,6 +273,9 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
       problem_(transient_problem(job, law, start_)),
       t_begin_(resumed_ ? resumed_->t_begin : start_.state.t),
       options_(transient_options(job, law, t_begin_)) {
+  constexpr double of_a_motion = 1e-4;
+  if (beginning_of(job, step, law) == Beginning::in_motion)
+    options_.integrator.scales.share_at_start = of_a_motion;
   warn_of_start();
   outputs_ = results::make_transient_outputs(
       {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value()});

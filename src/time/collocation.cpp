@@ -462,6 +462,18 @@ Stepper::Attempt Collocation::attempt(double h) {
   return out;
 }
 
+const VecX& Collocation::step_error(double h, double error) {
+  const double rates = std::max(1.0, rate_span_ / h);
+  for (Index i = 0; i < n_; ++i)
+    if (std::abs(rates * dq_[i]) > std::abs(e_[i])) e_[i] = rates * dq_[i];
+  // of two estimates the smaller one counts (taken_again)
+  if (first_ || retrying_) {
+    const double size = scale_.error_norm(e_) / allowance_;
+    if (size > error) e_ *= error / size;
+  }
+  return e_;
+}
+
 void Collocation::commit(double h) {
   a_last_.swap(a_stage_);
   h_last_ = h;

@@ -21,6 +21,8 @@ class Collocation final : public Stepper {
  private:
   Attempt attempt(double h) override;
   bool factor(double h) override;
+  const VecX& step_error(double h, double error) override;
+  double allowance() const override { return allowance_; }
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;

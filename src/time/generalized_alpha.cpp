@@ -137,6 +137,8 @@ Stepper::Attempt GeneralizedAlpha::attempt(double h) {
   return out;
 }
 
+const VecX& GeneralizedAlpha::step_error(double, double) { return r_; }
+
 void GeneralizedAlpha::commit(double h) {
   algorithmic_before_ = algorithmic_;
   difference_before_ = difference_;

@@ -16,6 +16,8 @@ class GeneralizedAlpha final : public Stepper {
   bool factor(double h) override;
   void predict(double h);
   void correct(double B, double G, Attempt& out);
+  const VecX& step_error(double h, double error) override;
+  double allowance() const override { return allowance_; }
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;

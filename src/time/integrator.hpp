@@ -13,6 +13,7 @@
 #pragma once
 #include <core/law.hpp>
 #include <time/problem.hpp>
+#include <time/twist_scale.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ struct Scales {
   double floor_displacement = 1e-13;  ///< m
   double floor_tilt = 1e-13;          ///< rad
   double floor_internal = 1e-9;       ///< own units
+  /// Of the coordinates at start(): displacements and tilts of a motion that goes on are not small
+  /// because they have not changed yet; 0: of a rotor at rest.
+  double share_at_start = 0.0;
   double length = 1.0;                ///< a length of the model, m: converts tilt to displacement
   double cross_floor = 1e-6;
   /// Unknowns that something finer than the response of their kind depends on (the journal in a
@@ -45,6 +49,10 @@ struct Scales {
     double scale;
   };
   std::vector<Limit> limits;
+  /// Shafts whose twist is looked at, and whether steps are chosen such that it is right to the
+  /// tolerance of its own range; else only its error is told (Statistics::twist_error).
+  std::vector<TwistGroup> twists;
+  bool follow_twist = false;
 };
 
 struct Options {
@@ -95,7 +103,12 @@ struct Statistics {
        factorizations_complex = 0;
   long residuals = 0, solves_real = 0, solves_complex = 0;
   double step_min = infinity, step_max = 0.0, step_sum = 0.0;  ///< of accepted steps, s
-  double error_max = 0.0, error_sum = 0.0;  ///< estimated local error / allowance
+  /// Estimated local error / allowance.
+  double error_max = 0.0, error_sum = 0.0;
+  // of judged_statistics()
+  double twist = 0.0;         ///< half the range of twist (Scales::twists), rad
+  double twist_error = 0.0;   ///< largest local error / allowance in it, by that range
+  bool twists_alone = false;  ///< nothing has moved but in twist
   double step_mean() const { return accepted ? step_sum / static_cast<double>(accepted) : 0.0; }
   double error_mean() const { return accepted ? error_sum / static_cast<double>(accepted) : 0.0; }
 };
@@ -180,6 +193,8 @@ class Integrator {
   virtual void set_end(double t_end) = 0;
   virtual void set_breakpoints(std::vector<double> times) = 0;
   virtual const Statistics& statistics() const = 0;
+  /// The same; errors of equal steps by the response of the whole run so far, and those of twist.
+  virtual Statistics judged_statistics() const { return statistics(); }
 
   /// Snapshot between steps. Marks a fresh linearisation for the next step, here and in whoever
   /// restores it: the two continue bit-identically (with equal options).

@@ -26,12 +26,14 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
     list.clear();
   for (Index i = 0; i < n; ++i)
     of_kind_[of(kinds_[at(i)])].push_back(i);
+  twist_.resize(kinds, options.twists);
   set_spin_inertia(VecX::Zero(n));
 }
 
 void ResponseScale::resolve(double smallest) {
   WHIRL_EXPECTS(smallest > 0.0);
   offset_share_ = std::max(least_share, rounding_units / smallest);
+  twist_floor_ = offset_share_;  // angles of nodes are of the order of one
 }
 
 void ResponseScale::reset(CRef q) {
@@ -39,11 +41,18 @@ void ResponseScale::reset(CRef q) {
   low_ = high_ = q;
   swept_.fill(0.0);
   size_.fill(0.0);
+  twist_.reset();
+  largest_twist_error_ = 0.0;
+  if (largest_error_.size() > 0) keep_errors();
   observe(q);
+  start_floor_.fill(0.0);
+  for (const Kind k : {Kind::displacement, Kind::tilt})
+    start_floor_[of(k)] = options_.share_at_start * size_[of(k)];
 }
 
 void ResponseScale::set_spin_inertia(CRef inertia) {
   WHIRL_EXPECTS(inertia.size() == inertia_.size());
+  twist_.set_inertia(inertia);
   double sum = 0.0;
   for (const Index i : spin())
     sum += std::abs(inertia[i]);
@@ -81,13 +90,17 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max(
-      {u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
-  g = std::max({g, o.tilt, o.floor_tilt, offset_share_ * size_[of(Kind::tilt)]});
+  u = std::max({u, o.displacement, o.floor_displacement, start_floor_[of(Kind::displacement)],
+                offset_share_ * size_[of(Kind::displacement)]});
+  g = std::max({g, o.tilt, o.floor_tilt, start_floor_[of(Kind::tilt)],
+                offset_share_ * size_[of(Kind::tilt)]});
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
   g = std::max(g, o.cross_floor * u0 / o.length);
-  s[of(Kind::spin_angle)] = o.spin_angle;
+  if (!twist_.empty())
+    twist_scale_ = std::max({twist_.swept(), 0.5 * twist_.size(dq), twist_floor_});
+  const bool fine = spin_by_twist_ && o.follow_twist && !twist_.empty();
+  s[of(Kind::spin_angle)] = fine ? std::min(twist_scale_, o.spin_angle) : o.spin_angle;
   s[of(Kind::held)] = infinity;
   if (s != used_) {
     used_ = s;
@@ -117,7 +130,8 @@ void ResponseScale::weigh_singly() {
 }
 
 double ResponseScale::norm(CRef x) const {
-  return x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>();
+  const double largest = x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>();
+  return options_.follow_twist ? std::max(largest, twist_.size(x) / twist_scale_) : largest;
 }
 
 double ResponseScale::rounding() const {
@@ -126,32 +140,70 @@ double ResponseScale::rounding() const {
     if (used_[of(k)] > 0.0) largest = std::max(largest, size_[of(k)] / used_[of(k)]);
   for (const Scales::Limit& l : options_.limits)
     largest = std::max(largest, size_[of(Kind::displacement)] / l.scale);
+  if (options_.follow_twist) largest = std::max(largest, 1.0 / twist_scale_);
   return rounding_units * largest;
 }
 
 double ResponseScale::error_norm(CRef x) const {
   WHIRL_EXPECTS(x.size() == weight_.size());
   const double largest = x.cwiseAbs().cwiseProduct(single_weight_).maxCoeff();
-  double turned = 0.0;
-  for (const Index i : spin())
-    turned += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
   // NaN must not be lost in a comparison
   const double sum = x.sum();
-  return std::isfinite(sum) ? std::max(largest, std::sqrt(turned)) : infinity;
+  if (!std::isfinite(sum)) return infinity;
+  const double twist = options_.follow_twist ? twist_.size(x) / twist_scale_ : 0.0;
+  return std::max({largest, turned(x), twist});
+}
+
+double ResponseScale::turned(CRef x) const {
+  double sum = 0.0;
+  for (const Index i : spin())
+    sum += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
+  return std::sqrt(sum);
+}
+
+void ResponseScale::keep_errors() {
+  largest_error_ = sum_of_errors_ = VecX::Zero(weight_.size());
+  largest_turned_ = sum_turned_ = errors_ = 0.0;
+}
+
+void ResponseScale::observe_error(CRef x) {
+  largest_twist_error_ = std::max(largest_twist_error_, twist_.size(x));
+  if (largest_error_.size() == 0) return;
+  const double turn = turned(x);
+  largest_error_ = largest_error_.cwiseMax(x.cwiseAbs());
+  largest_turned_ = std::max(largest_turned_, turn);
+  sum_of_errors_ += x.cwiseAbs();
+  sum_turned_ += turn;
+  errors_ += 1.0;
+}
+
+double ResponseScale::mean_error() const {
+  return errors_ > 0.0 ? kept_norm(sum_of_errors_, sum_turned_) / errors_ : 0.0;
+}
+
+double ResponseScale::kept_norm(const VecX& x, double turned) const {
+  return std::max(x.cwiseProduct(single_weight_).maxCoeff(), turned);
 }
 
 void ResponseScale::save(std::vector<double>& out) const {
   out.insert(out.end(), swept_.begin(), swept_.end());
   out.insert(out.end(), size_.begin(), size_.end());
-  for (const VecX* x : {&low_, &high_, &inertia_})
+  out.insert(out.end(), start_floor_.begin(), start_floor_.end());
+  twist_.save(out);
+  out.insert(out.end(), {largest_turned_, sum_turned_, errors_, largest_twist_error_});
+  for (const VecX* x : {&low_, &high_, &inertia_, &largest_error_, &sum_of_errors_})
     out.insert(out.end(), x->data(), x->data() + x->size());
 }
 
 const double* ResponseScale::restore(const double* in) {
   std::copy_n(in, kinds_count, swept_.begin());
   std::copy_n(in + kinds_count, kinds_count, size_.begin());
-  in += 2 * kinds_count;
-  for (VecX* x : {&low_, &high_, &inertia_}) {
+  std::copy_n(in + 2 * kinds_count, kinds_count, start_floor_.begin());
+  in += 3 * kinds_count;
+  in = twist_.restore(in);
+  for (double* c : {&largest_turned_, &sum_turned_, &errors_, &largest_twist_error_})
+    *c = *in++;
+  for (VecX* x : {&low_, &high_, &inertia_, &largest_error_, &sum_of_errors_}) {
     std::copy_n(in, x->size(), x->data());
     in += x->size();
   }

@@ -23,6 +23,7 @@ Stepper::Stepper(Problem& problem, const Options& options)
   WHIRL_EXPECTS(problem.kinds().size() == at(n_));
   WHIRL_EXPECTS(options.tolerance > 0.0 && options.max_attempts > 0);
   scale_.resize(problem.kinds(), options.scales);
+  if (options.dt_fixed > 0.0) scale_.keep_errors();
   initial_.resize(problem);
   for (Index i = 0; i < n_; ++i)
     if (problem.kinds()[at(i)] == Kind::held) held_.push_back(i);
@@ -375,6 +376,8 @@ double Stepper::shorter_after(Attempt& failed, double h, StepReport& report) {
 }
 
 void Stepper::take_step(double h, const StepReport& report) {
+  if (scale_.keeps_errors()) scale_.observe_error(step_error(h, report.error));
+  scale_.observe_twist(q0_, q_, false);
   commit(h);
   h_ = h;
   have_step_ = accept_pending_ = true;
@@ -391,6 +394,18 @@ void Stepper::take_step(double h, const StepReport& report) {
   if (rate_span_ > 0.0 && (h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
   statistics_.error_max = std::max(statistics_.error_max, report.error);
   statistics_.error_sum += report.error;
+}
+
+Statistics Stepper::judged_statistics() const {
+  Statistics s = statistics_;
+  s.twist = scale_.twist();
+  s.twist_error = scale_.twist_error() / allowance();
+  s.twists_alone = scale_.twists_alone();
+  if (options_.dt_fixed > 0.0) {
+    s.error_max = scale_.largest_error() / allowance();
+    s.error_sum = scale_.mean_error() / allowance() * static_cast<double>(s.accepted);
+  }
+  return s;
 }
 
 void Stepper::return_to_start() {
@@ -425,6 +440,7 @@ StepReport Stepper::shorten_to(double t) {
     report.t1 = t_;
     return report;
   }
+  scale_.observe_twist(q0_, q_, true);
   commit(h);
   h_ = h;
   accept_pending_ = true;

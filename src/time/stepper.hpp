@@ -31,6 +31,7 @@ class Stepper : public Integrator {
   void set_end(double t_end) final;
   void set_breakpoints(std::vector<double> times) final;
   const Statistics& statistics() const final { return statistics_; }
+  Statistics judged_statistics() const final;
   IntegratorState save() final;
   void restore(const IntegratorState& state) final;
 
@@ -45,6 +46,11 @@ class Stepper : public Integrator {
   virtual Attempt attempt(double h) = 0;
   /// Factors the iteration matrices for step h.
   virtual bool factor(double h) = 0;
+  /// Errors of the step of length h just made, in the unit of each unknown; error: their size
+  /// relative to allowance(), as the step was judged.
+  virtual const VecX& step_error(double h, double error) = 0;
+  /// What the error of a step may be, relative to the scales.
+  virtual double allowance() const = 0;
   /// The step of length h is accepted: it becomes history.
   virtual void commit(double h) = 0;
   /// The last step is to be made again, shorter, from its start.

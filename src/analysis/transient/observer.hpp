@@ -30,6 +30,8 @@ class StepAccess {
   virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     lateral(at(t), points, out);
   }
+  /// Angle of a node with its whole turns, rad, as at(t) says, and cheaper in the same way.
+  virtual double total_phi(double t, Index node) { return at(t).total_phi(node); }
   /// Power supplied and dissipated at t, as at(t).exchange() says, and cheaper where few elements do
   /// either. What at() gave before is no longer good.
   virtual time::Problem::Power exchange(double t) { return at(t).exchange(); }

@@ -69,21 +69,23 @@ double Revolutions::time_of(StepAccess& s, double phi) {
   }
   double t = s.t0() + x * h;
   for (int k = 0; k < 6; ++k) {
-    const Snapshot& now = s.at(std::min(t, s.t1()));
-    const double error = angle(now) - phi, rate = now.node(reference_).dphi;
+    t = std::min(t, s.t1());
+    const double error = s.total_phi(t, reference_) - phi;
     // 1e-6 rad of 2 pi: far below what a turn's filter resolves
-    if (std::abs(error) < 1e-6 || rate * change <= 0.0) break;
+    if (std::abs(error) < 1e-6) break;
+    const double rate = s.at(t).node(reference_).dphi;
+    if (rate * change <= 0.0) break;
     t = std::clamp(t - error / rate, s.t0(), s.t1());
   }
   return t;
 }
 
-void Revolutions::take(const Snapshot& s) {
+void Revolutions::take(StepAccess& s, double t) {
   const auto at = static_cast<std::size_t>(filled_++);
+  s.displacements(t, probes_, at_probes_);
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    const Vec3 u = displacement(s, probes_[i]);
-    turn_.y[i][at] = u.y();
-    turn_.z[i][at] = u.z();
+    turn_.y[i][at] = at_probes_[i].x();
+    turn_.z[i][at] = at_probes_[i].y();
   }
 }
 
@@ -106,13 +108,12 @@ void Revolutions::step(StepAccess& s) {
     const bool keyphasor = next_ % turn_.n == 0;
     if (filled_ == 0 && !keyphasor) continue;  // collecting begins at the mark
     const double t = time_of(s, static_cast<double>(next_) * step_angle_);
-    const Snapshot& now = s.at(t);
     if (!keyphasor) {
-      take(now);
+      take(s, t);
       continue;
     }
     if (filled_ == turn_.n) {
-      take(now);
+      take(s, t);
       turn_.t1 = t;
       turn_.backward = direction < 0;
       turn_.number = next_ / turn_.n - (direction > 0 ? 1 : 0);
@@ -120,7 +121,7 @@ void Revolutions::step(StepAccess& s) {
     }
     filled_ = 0;
     turn_.t0 = t;
-    take(now);
+    take(s, t);
   }
 }
 

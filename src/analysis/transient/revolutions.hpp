@@ -55,11 +55,12 @@ class Revolutions final : public Observer {
  private:
   double angle(const Snapshot& s) const { return s.total_phi(reference_); }
   double time_of(StepAccess& s, double phi);
-  void take(const Snapshot& s);
+  void take(StepAccess& s, double t);
   std::vector<Point> probes_;
   Index reference_;
   Sink sink_;
   Turn turn_;
+  std::vector<Vec2> at_probes_;  ///< (y, z), m
   double step_angle_;
   double phi_ = 0, rate_ = 0;            ///< at the end of the last step
   double step_phi_ = 0, step_rate_ = 0;  ///< at the start of the present one

@@ -92,6 +92,16 @@ class StepDense final : public StepAccess {
     if (!alone(t, points, out)) lateral(at(t), points, out);
   }
 
+  double total_phi(double t, Index node) override {
+    const system::Frames& frames = snapshot_.frames();
+    if (frames.moved() || !snapshot_.system().followers().empty()) return at(t).total_phi(node);
+    const Index unknown = 6 * node + system::spin_phi;
+    Vector<1> phi;
+    if (!integrator_.interpolate_entries(std::min(t, t1_), std::span(&unknown, 1), phi))
+      return at(t).total_phi(node);
+    return phi[0] + two_pi * frames.turns[at_(snapshot_.system().node(node).line)];
+  }
+
  private:
   static std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
 
@@ -227,7 +237,7 @@ class Run {
       options_.checkpoint(state_now(), s);
     }
     result_.end = state_now();
-    result_.statistics = integrator_->statistics();
+    result_.statistics = integrator_->judged_statistics();
     for (Observer* o : observers_)
       o->end();
     return std::move(result_);

@@ -54,6 +54,11 @@ class Ida final : public Integrator {
   void set_end(double t_end) override { stops_.set_end(t_end); }
   void set_breakpoints(std::vector<double> times) override { stops_.set_breaks(std::move(times)); }
   const Statistics& statistics() const override { return statistics_; }
+  Statistics judged_statistics() const override {
+    Statistics s = statistics_;
+    s.twist = scale_.twist();
+    return s;
+  }
   IntegratorState save() override;
   void restore(const IntegratorState& state) override;
 
@@ -219,6 +224,7 @@ Ida::Ida(Problem& problem, const Options& options)
   stops_.set_breaks(options.breakpoints);
   initial_.resize(problem);
   scale_.resize(kinds, options.scales);
+  scale_.weigh_spin_by_twist();
   allowance_ = allowance_factor * std::pow(options.tolerance, 1.5);
 
   ida_ = IDACreate(context_.handle);
@@ -440,6 +446,7 @@ StepReport Ida::step_to(double stop, bool is_break) {
   report.at_breakpoint = at_break_ = landed && is_break;
   have_step_ = accept_pending_ = true;
   scale_.observe(q_);
+  scale_.observe_twist(q0_, q_, false);
   IDAGetCurrentStep(ida_, &h_next_);
   const double h = t_ - t0_;
   report.error = local_error(h);
