@@ -132,6 +132,23 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
   sort_terms();
 }
 
+namespace {
+
+/// Lines that no term acts on: rigid ones without mass between joints.
+std::vector<unsigned char> bare_lines(const system::System& s) {
+  std::vector<unsigned char> bare(at(s.lines()), 1);
+  std::vector<Index> nodes;
+  for (const auto& term : s.terms()) {
+    nodes.clear();
+    term->list_nodes(nodes);
+    for (const Index i : nodes)
+      bare[at(s.node(i).line)] = 0;
+  }
+  return bare;
+}
+
+}  // namespace
+
 void SteadySystem::find_spinning() {
   std::vector<unsigned char> turnable(at(system_.nodes()), 0);
   for (const auto& term : system_.terms())
@@ -141,6 +158,11 @@ void SteadySystem::find_spinning() {
       for (Index i : nodes)
         turnable[at(i)] = 1;
     }
+  if (system_.followers().count() > 0) {
+    const std::vector<unsigned char> bare = bare_lines(system_);
+    for (Index i = 0; i < system_.nodes(); ++i)
+      if (bare[at(system_.node(i).line)]) turnable[at(i)] = 1;
+  }
   spinning_.assign(at(system_.nodes()), 0);
   for (Index i = 0; i < system_.nodes(); ++i)
     spinning_[at(i)] =

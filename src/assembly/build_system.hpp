@@ -164,6 +164,14 @@ struct TurnCount {
   LawPtr angle;  ///< that is prescribed; null: of a speed controller
 };
 
+/// A line without polar inertia that nothing turns: it goes on with the spin it has where begin() was
+/// called last: time, s, angle, rad, whole turns included, and spin, rad/s.
+struct CoastingLine {
+  std::string line;
+  Index node = 0;
+  std::function<void(double time, double angle, double spin)> begin;
+};
+
 /// Spin every node of a line starts with: from a prescribed angle law of the step, else
 /// Shaft::spin0.
 struct LineSpin {
@@ -204,6 +212,7 @@ struct Built {
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<TurnCount> turn_counts;
+  std::vector<CoastingLine> coasting;
   std::vector<LineSpin> spins;  ///< one a line
   Index reference = 0;  ///< node whose spin is the speed axis: the first drive's, else the first
                         ///< node of the first rotating line

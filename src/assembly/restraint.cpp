@@ -5,6 +5,7 @@
 // the ends); axially: one. Each support is a row: relative motion of its two sides. What the rows
 // leave free is their null space, found for each group of connected lines on its own.
 #include <assembly/parts.hpp>
+#include <assembly/tied_lines.hpp>
 #include <elements/supports/linear_bearing.hpp>
 #include <meshes/mass_properties.hpp>
 
@@ -56,6 +57,24 @@ const model::Step& first_of(const model::Model& m, const model::Step& s) {
     if (!s.from.empty() && other.name == s.from) return first_of(m, other);
   return s;
 }
+
+/// Angle of a line that keeps its spin.
+struct Coasting {
+  double time = 0, angle = 0, spin = 0;
+};
+class AngleOfCoasting final : public Law {
+ public:
+  explicit AngleOfCoasting(std::shared_ptr<const Coasting> motion) : motion_(std::move(motion)) {}
+  LawValue at(double t) const override {
+    return {motion_->angle + motion_->spin * (t - motion_->time), motion_->spin, 0.0};
+  }
+  double integral(double t) const override {
+    return (motion_->angle - motion_->spin * motion_->time + 0.5 * motion_->spin * t) * t;
+  }
+
+ private:
+  std::shared_ptr<const Coasting> motion_;
+};
 
 class Restraint {
  public:
@@ -121,32 +140,62 @@ class Restraint {
         hold(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
         continue;
       }
-      // No inertia about the axis at all: an unknown spin would have no equation.
-      const meshes::MassProperties p = meshes::shaft_mass(a_.model, l);
-      LineSpin& spin = a_.built.spins[l];
-      if (spin.prescribed || p.Ip() > 1e-15 * p.mass * line.length * line.length) continue;
-      for (const model::Drive& d : a_.model.drives)
-        if (a_.acts(d) && d.at.shaft == l) {
-          const std::string who = fmt::format("drive '{}'", d.name);
-          a_.error(
-              "E32",
-              fmt::format(
-                  "{}: shaft '{}' has no inertia about its axis that a torque could accelerate",
-                  who, line.name),
-              "give a disk its Ip, or prescribe the speed", d, who);
-        }
-      spin.prescribed = true;
-      spin.angle = make_angle_of_speed(make_constant(spin.spin0), 0.0);
-      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
-        a_.builder.hold(n, system::spin_phi, spin.angle);
-      hold(
-          fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it "
-                      "turns at {:.6g} rad/s",
-                      line.name, spin.spin0));
+      if (a_.built.spins[l].prescribed || has_polar_inertia(l) || turned_by_another(l)) continue;
+      refuse_torques_on(l);
+      let_coast(l);
     }
   }
 
  private:
+  bool has_polar_inertia(std::size_t l) const {
+    const meshes::Line& line = a_.mesh.lines[l];
+    const meshes::MassProperties p = meshes::shaft_mass(a_.model, l);
+    return p.Ip() > 1e-15 * p.mass * line.length * line.length;
+  }
+  /// Something passes torque to it from a line whose spin has an equation: its own is the balance of
+  /// torques then (a spacer between couplings, an idler).
+  bool turned_by_another(std::size_t l) const {
+    std::vector<std::size_t> first = tied_lines(a_.model);
+    for (const Link& k : links_) {
+      if (!k.in[rx] || k.b.line < 0) continue;
+      if (!a_.mesh.lines[at(k.a.line)].rotating || !a_.mesh.lines[at(k.b.line)].rotating) continue;
+      const auto [to, from] = std::minmax({first[at(k.a.line)], first[at(k.b.line)]});
+      std::replace(first.begin(), first.end(), from, to);
+    }
+    for (std::size_t other = 0; other < first.size(); ++other)
+      if (first[other] == first[l] &&
+          (a_.built.spins[other].prescribed || has_polar_inertia(other)))
+        return true;
+    return false;
+  }
+  void refuse_torques_on(std::size_t l) {
+    for (const model::Drive& d : a_.model.drives) {
+      if (!a_.acts(d) || d.at.shaft != l) continue;
+      const std::string who = fmt::format("drive '{}'", d.name);
+      a_.error(
+          "E32",
+          fmt::format("{}: shaft '{}' has no inertia about its axis that a torque could accelerate",
+                      who, a_.mesh.lines[l].name),
+          "give a disk its Ip, or prescribe the speed", d, who);
+    }
+  }
+  /// No inertia about the axis at all: an unknown spin would have no equation.
+  void let_coast(std::size_t l) {
+    const meshes::Line& line = a_.mesh.lines[l];
+    const double spin = a_.built.spins[l].spin0;
+    const auto motion = std::make_shared<Coasting>(Coasting{.spin = spin});
+    const LawPtr angle = std::make_shared<AngleOfCoasting>(motion);
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+      a_.builder.hold(n, system::spin_phi, angle);
+    a_.built.coasting.push_back(
+        {line.name, line.first_node, [motion](double t, double phi, double now) {
+           *motion = {t, phi, now};
+         }});
+    hold(fmt::format(
+        "torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it keeps "
+        "the speed that a step starts with",
+        line.name));
+  }
   /// Small motions keep it, equilibria hold it; a motion in time that starts from one is held.
   void free_or_hold_axially(const std::vector<std::size_t>& lines) {
     const Index node = a_.mesh.lines[lines.front()].first_node;
@@ -257,11 +306,26 @@ class Restraint {
                        [this](std::size_t l) { return !a_.model.shafts[l].path.empty(); });
   }
 
+  /// Weight, loads or accelerations have a moment about the axis of a line.
+  bool is_turned(std::size_t l) const {
+    const double length = std::max(a_.mesh.lines[l].length, 1e-300);
+    const Vec3 centre = meshes::shaft_mass(a_.model, l).centre();
+    const bool off_the_axis = centre.tail<2>().norm() > 1e-9 * length;
+    const model::BaseMotion& base = a_.model.base;
+    const bool pulled = !a_.model.gravity.isZero(0.0) || base.turn ||
+                        std::any_of(base.acceleration.begin(), base.acceleration.end(),
+                                    [](const LawPtr& law) { return law != nullptr; });
+    const bool loaded = std::any_of(
+        a_.model.loads.begin(), a_.model.loads.end(),
+        [l](const model::PointLoad& f) { return f.at.shaft == l && f.moment.x() != 0.0; });
+    return (off_the_axis && (pulled || in_time_)) || (loaded && has_polar_inertia(l));
+  }
+
   /// A straight casing that could turn about its axis. One that has bends is no casing about an
   /// axis: what holds it is the equilibrium's to find (E75); one that is set turning, or that
   /// nothing holds in space, moves as it does.
   bool turns_freely(std::size_t l) {
-    if (a_.model.joined(l) || bent({l})) return false;
+    if (a_.model.joined(l) || bent({l}) || is_turned(l)) return false;
     const auto with = [&](const std::vector<std::size_t>& lines) {
       return contains(lines, static_cast<Index>(l));
     };

@@ -173,6 +173,16 @@ void begin_drives(const run::Job& job, run::StepState& start, Beginning beginnin
     count.begin(began.time, began.angle);
     acting[count.drive] = began;
   }
+  for (const assembly::CoastingLine& c : job.built.coasting) {
+    const system::State& now = start.state;
+    run::StepState::Began began{now.t, now.total_phi(c.node, job.system().node(c.node).line)};
+    const std::string key = "line " + c.line;
+    if (const auto before = start.drives.find(key);
+        beginning == Beginning::resumed && before != start.drives.end())
+      began = before->second;
+    c.begin(began.time, began.angle, now.v[6 * c.node + system::spin_phi]);
+    acting[key] = began;
+  }
   start.drives = std::move(acting);
 }
 

@@ -312,7 +312,7 @@ void TransientRun::add_own_parts() {
     parts_.add(
         {run::Part::steady_motion}, [small](OutArchive& a) { small->save(a); },
         [small](InArchive& a) { small->restore(a); });
-  if (!job_.built.turn_counts.empty())
+  if (!job_.built.turn_counts.empty() || !job_.built.coasting.empty())
     parts_.add(
         {run::Part::drives}, [this](OutArchive& a) { save_drives(a, start_); },
         [this](InArchive& a) {

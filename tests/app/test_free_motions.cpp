@@ -239,3 +239,63 @@ TEST(FreeMotions, BothRatesOfAFloatingRotorOnDampersAreListed) {
     EXPECT_EQ(rates[3], 0.0);
   }
 }
+
+// A casing on two bearings whose mass hangs beside its axis: sqrt(m g e/(Ip + m e^2)) about its axis; it
+// was held at its angle.
+TEST(FreeMotions, ACasingThatHangsSwings) {
+  const auto casing = [](const char* offset, const char* step) {
+    return std::string(R"(format = 1
+[output]
+report = false
+every = "1 ms"
+quantities = ["rotation"]
+[model]
+gravity = "9.81 m/s^2"
+gravity_direction = "-z"
+[[shaft]]
+name = "c"
+rotating = false
+[[shaft.section]]
+name = "a"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "d"
+at = "a:mid"
+mass = "10 kg"
+Ip = "0.05 kg.m^2"
+Id = "0.5 kg.m^2"
+offset = )") +
+           offset +
+           R"(
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "a:end"
+type = "rigid"
+directions = ["y", "z"]
+[[probe]]
+name = "p"
+at = "d"
+[[step]]
+name = "s"
+)" + step;
+  };
+  const double expected = std::sqrt(10 * 9.81 * 0.1 / (0.05 + 10 * 0.01)) / (2 * std::numbers::pi);
+  const DeckRun modes(
+      casing(R"(["0 mm", "0 mm", "-100 mm"])", "type = \"modal\"\nspeed = \"0 rpm\"\nmodes = 1\n"));
+  ASSERT_EQ(modes.exit, 0) << modes.log;
+  const auto table = modes.csv("s_modes.csv");
+  EXPECT_NEAR(table.named(table.rows.at(0)).at("frequency [Hz]"), expected, 1e-6);
+  // from level it swings through the lowest point to the other side: 180 degrees
+  const DeckRun swing(casing(R"(["0 mm", "100 mm", "0 mm"])",
+                             "type = \"transient\"\nstart = \"rest\"\nduration = \"1 s\"\n"));
+  ASSERT_EQ(swing.exit, 0) << swing.log;
+  const auto motion = swing.csv("s.csv");
+  double least = 0;
+  for (const auto& row : motion.rows)
+    least = std::min(least, row[motion.column("p.phi [rad]")]);
+  EXPECT_NEAR(least, -std::numbers::pi, 1e-3);
+}
