@@ -34,8 +34,9 @@ double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, cons
 bool turns(int component) { return component >= 3; }
 
 /// The same of masses. An unbalance is an eccentricity of what stands at its node, and ties the
-/// displacements there to the angles; its size is to be compared with the inertia of the whole line,
-/// however little of it stands at the node.
+/// displacements there to the angles: lateral motion to twist, axial motion to tilt. A motion is acted
+/// back upon through both, by the square of the coupling, which is to be compared with the inertia of
+/// the whole line, however little of it stands at the node.
 double difference_of_masses(const system::System& system, const la::BlockMatrix<6>& x,
                             const la::BlockMatrix<6>& y, const VecX& diagonal) {
   VecX mass = VecX::Zero(system.lines()), rotary = mass;
@@ -56,8 +57,8 @@ double difference_of_masses(const system::System& system, const la::BlockMatrix<
       for (int b = 0; b < 6; ++b)
         if (a != system::spin_phi && b != system::spin_phi && turns(a) != turns(b))
           coupling = std::max(coupling, std::abs(d(a, b)));
-    const double size = std::sqrt(mass[line] * rotary[line]);
-    if (coupling > 0.0 && size > 0.0) worst = std::max(worst, coupling / size);
+    const double size = mass[line] * rotary[line];
+    if (coupling > 0.0 && size > 0.0) worst = std::max(worst, coupling * coupling / size);
     const double m = diagonal.segment<3>(6 * i).maxCoeff();
     const double tilt = m > 0.0 ? coupling * coupling / m : 0.0;  // m e^2
     if (tilt > 0.0) worst = std::max(worst, tilt / rotary[line]);
