@@ -93,6 +93,19 @@ double CarriedPad::gap(Index i, const Vec2& r) const {
   return clearance_ - (r + lift_ * thinnest_).dot(normal_[at(i)]) / width_;
 }
 
+template <class T>
+T CarriedPad::gap_at(double angle, const T& ry, const T& rz) const {
+  const Vec2 n = outward(angle);
+  return T(clearance_ - lift_ * thinnest_.dot(n)) - (ry * n.x() + rz * n.y());
+}
+
+bool CarriedPad::open(Index i, const Vec2& r) const {
+  const auto at_face = [&](Index face) {
+    return gap_at(start_ + static_cast<double>(face) * width_, r.x(), r.y());
+  };
+  return gap(i, r) > 0.0 && at_face(i) > 0.0 && at_face(i + 1) > 0.0;
+}
+
 double CarriedPad::pressure(double content, double gap) const {
   return filling(content / gap - 1.0).pressure;
 }
@@ -105,12 +118,6 @@ double CarriedPad::row_factor() const {
 double CarriedPad::pump(Index i, double fed, const Vec2& w, double slip) const {
   const Vec2 W = w - slip * lever();
   return film_.supply_pressure * film_.radius * film_.length * (fed + W.dot(normal_[at(i)]));
-}
-
-template <class T>
-T CarriedPad::gap_at(double angle, const T& ry, const T& rz) const {
-  const Vec2 n = outward(angle);
-  return T(clearance_ - lift_ * thinnest_.dot(n)) - (ry * n.x() + rz * n.y());
 }
 
 template <class T>
@@ -262,17 +269,22 @@ double CarriedPad::balanced_cell(Index i, const Vec2& r, double slip) const {
   return last_.content[at(i)];
 }
 
-template <bool Offsets>
-LateralMotion CarriedCell<Offsets>::motion(const Nodes& x, const system::Context& c) const {
-  return Link{offset}.motion(ends(x), c, spins(x), false);
+template <int Moves, bool Offsets>
+LateralMotion PadCell<Moves, Offsets>::motion(const Nodes& x, const system::Context& c) const {
+  LateralMotion m = Link{offset}.motion(ends(x), c, spins(x), false);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    m.r -= x[2 + k]->u.x() * directions[k];
+    m.v -= x[2 + k]->du.x() * directions[k];
+  }
+  return m;
 }
 
-template <bool Offsets>
-auto CarriedCell<Offsets>::contents(const Nodes& x) const -> Contents {
+template <int Moves, bool Offsets>
+auto PadCell<Moves, Offsets>::contents(const Nodes& x) const -> Contents {
   const Index last = pad->cells() - 1;
-  return {x[2]->u.x() + pad->reference(std::max<Index>(cell - 1, 0)),
-          x[4]->u.x() + pad->reference(cell),
-          x[3]->u.x() + pad->reference(std::min(cell + 1, last))};
+  return {x[before]->u.x() + pad->reference(std::max<Index>(cell - 1, 0)),
+          x[held]->u.x() + pad->reference(cell),
+          x[next]->u.x() + pad->reference(std::min(cell + 1, last))};
 }
 
 namespace {
@@ -289,8 +301,8 @@ std::array<T, 4> load_of(const CarriedPad& pad, const CarriedPad::Cell<T>& c, co
 
 }  // namespace
 
-template <bool Offsets>
-Vector<4> CarriedCell<Offsets>::load(const Nodes& x, const system::Context& c) const {
+template <int Moves, bool Offsets>
+Vector<4> PadCell<Moves, Offsets>::load(const Nodes& x, const system::Context& c) const {
   const LateralMotion m = motion(x, c);
   const Contents q = contents(x);
   const auto now =
@@ -299,25 +311,29 @@ Vector<4> CarriedCell<Offsets>::load(const Nodes& x, const system::Context& c) c
   return Vector<4>(z[0], z[1], z[2], z[3]);
 }
 
-template <bool Offsets>
-void CarriedCell<Offsets>::add_force(const Nodes& x, const system::Context& c,
-                                     system::ForceX<size>& f) const {
+template <int Moves, bool Offsets>
+void PadCell<Moves, Offsets>::add_force(const Nodes& x, const system::Context& c,
+                                        system::ForceX<size>& f) const {
   const LateralMotion m = motion(x, c);
   const Contents q = contents(x);
   const double ry = m.r.x(), rz = m.r.y();
   const auto now = pad->cell(cell, ry, rz, m.spin - m.housing_spin, q.before, q.own, q.next);
   const std::array<double, 4> load = load_of(*pad, now, ry, rz);
   Vector<4> z(load[0], load[1], load[2], load[3]);
-  if (!(pad->gap(cell, m.r) > 0.0)) z.setConstant(nan);
+  // a pad that turns away from its journal touches at an edge first
+  const bool inside = Moves > 0 ? pad->open(cell, m.r) : pad->gap(cell, m.r) > 0.0;
+  if (!inside) z.setConstant(nan);
   system::ForceX<14> at_ends = system::ForceX<14>::Zero();
   Link{offset}.add_force(spins(x), z, at_ends);
   f.template head<14>() += at_ends;
-  f[28] += pad->row_factor() * (x[4]->du.x() + now.outflow);
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    f[row_of(k)] += z.head<2>().dot(directions[k]);
+  f[7 * held] += pad->row_factor() * (x[held]->du.x() + now.outflow);
 }
 
-template <bool Offsets>
-void CarriedCell<Offsets>::add_tangent(const Nodes& x, const system::Context& c,
-                                       system::TangentX<size>& t) const {
+template <int Moves, bool Offsets>
+void PadCell<Moves, Offsets>::add_tangent(const Nodes& x, const system::Context& c,
+                                          system::TangentX<size>& t) const {
   constexpr int by_ry = 0, by_rz = 1, by_slip = 2, by_before = 3, by_own = 4, by_next = 5;
   using All = Dual<6>;
   const auto s = spins(x);
@@ -329,6 +345,7 @@ void CarriedCell<Offsets>::add_tangent(const Nodes& x, const system::Context& c,
                              All::variable(q.next, by_next));
   const std::array<All, 4> load = load_of(*pad, now, ry, rz);
   const double row = pad->row_factor();
+  constexpr Index row_held = 7 * held;
   Vector<4> z;
   Matrix<4, 3> by_contents;
   LateralTangent of_load, of_row;
@@ -352,25 +369,43 @@ void CarriedCell<Offsets>::add_tangent(const Nodes& x, const system::Context& c,
   Link{offset}.add_tangent(s, z, of_load, false, at_ends);
   t.C.template topLeftCorner<14, 14>() += at_ends.C;
   t.K.template topLeftCorner<14, 14>() += at_ends.K;
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const Eigen::RowVector2d along = -directions[k].transpose();
+    t.C.template block<1, 14>(row_of(k), 0) += along * at_ends.C.template middleRows<2>(1);
+    t.K.template block<1, 14>(row_of(k), 0) += along * at_ends.K.template middleRows<2>(1);
+  }
   at_ends.C.setZero();
   at_ends.K.setZero();
   Link{offset}.add_tangent(s, Vector<4>::Zero(), of_row, false, at_ends);
-  t.C.template block<1, 14>(28, 0) -= at_ends.C.row(1);
-  t.K.template block<1, 14>(28, 0) -= at_ends.K.row(1);
-  constexpr std::array<Index, 3> column_of{14, 28, 21};  // before, own, next
+  t.C.template block<1, 14>(row_held, 0) -= at_ends.C.row(1);
+  t.K.template block<1, 14>(row_held, 0) -= at_ends.K.row(1);
+  constexpr std::array<Index, 3> column_of{7 * before, row_held, 7 * next};
   for (const Index k : {by_before, by_own, by_next}) {
     const Index column = column_of[at(k - by_before)];
     system::ForceX<14> of_ends = system::ForceX<14>::Zero();
     Link{offset}.add_force(s, by_contents.col(k - by_before), of_ends);
     t.K.template block<14, 1>(0, column) += of_ends;
-    t.K(28, column) += row * now.outflow.g[k];
+    for (std::size_t j = 0; j < directions.size(); ++j)
+      t.K(row_of(j), column) +=
+          directions[j].dot(by_contents.col(k - by_before).template head<2>());
+    t.K(row_held, column) += row * now.outflow.g[k];
   }
-  t.C(28, 28) += row;
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const Index column = row_of(k);
+    const Vector<4> by_move = -of_load.r * directions[k];
+    system::ForceX<14> of_ends = system::ForceX<14>::Zero();
+    Link{offset}.add_force(s, by_move, of_ends);
+    t.K.template block<14, 1>(0, column) += of_ends;
+    for (std::size_t j = 0; j < directions.size(); ++j)
+      t.K(row_of(j), column) += directions[j].dot(by_move.template head<2>());
+    t.K(row_held, column) -= of_row.r.row(0).dot(directions[k]);
+  }
+  t.C(row_held, row_held) += row;
 }
 
-template <bool Offsets>
-void CarriedCell<Offsets>::add_energy(const Nodes& x, const system::Context& c,
-                                      system::Energy& e) const {
+template <int Moves, bool Offsets>
+void PadCell<Moves, Offsets>::add_energy(const Nodes& x, const system::Context& c,
+                                         system::Energy& e) const {
   const LateralMotion m = motion(x, c);
   const Contents q = contents(x);
   const FilmPoint p = FilmLaw<FiniteJournal>::point(m);
@@ -383,15 +418,24 @@ void CarriedCell<Offsets>::add_energy(const Nodes& x, const system::Context& c,
   e.supplied += pump;
 }
 
-template <bool Offsets>
-void CarriedCell<Offsets>::relax(const Nodes& x, const system::Context& c,
-                                 std::array<double, own>& q) const {
+template <int Moves, bool Offsets>
+void PadCell<Moves, Offsets>::relax(const Nodes& x, const system::Context& c,
+                                    std::array<double, own>& q) const {
   const LateralMotion m = motion(x, c);
   const double content = pad->balanced_cell(cell, m.r, m.spin - m.housing_spin);
   if (std::isfinite(content)) q[0] = content - pad->reference(cell);
 }
 
-template struct CarriedCell<false>;
-template struct CarriedCell<true>;
+template <int Moves, bool Offsets>
+double PadCell<Moves, Offsets>::full(const Nodes& x) const {
+  return pad->gap(cell, motion(x, {}).r) - pad->reference(cell);
+}
+
+template struct PadCell<0, false>;
+template struct PadCell<0, true>;
+template struct PadCell<1, false>;
+template struct PadCell<1, true>;
+template struct PadCell<2, false>;
+template struct PadCell<2, true>;
 
 }  // namespace whirl::elements

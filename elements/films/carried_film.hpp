@@ -48,6 +48,8 @@ class CarriedPad {
   double width() const { return width_; }
   /// Mean gap of a cell with the journal at r, m.
   double gap(Index i, const Vec2& r) const;
+  /// Nowhere from face to face a cell touches.
+  bool open(Index i, const Vec2& r) const;
   /// Content of the full cell with the journal centred, m: what its unknown is counted from.
   double reference(Index i) const { return gap(i, Vec2::Zero()); }
   /// Axial mean, Pa. content: m.
@@ -111,12 +113,13 @@ class CarriedPad {
   std::vector<Vec2> normal_;  ///< int n dtheta of each cell
 };
 
-/// One cell of a film. Nodes: 0 journal, 1 housing, then scalars, in m: content of the cell before, of
-/// the next one and of its own, each less CarriedPad::reference. At the ends of a pad the cell itself
-/// stands for the one that is not there.
-template <bool Offsets = false>
-struct CarriedCell {
-  static constexpr int n_nodes = 5, own = 1, width = 7, size = 7 * n_nodes;
+/// One cell of a film. Nodes: 0 journal, 1 housing; scalars in which its pad moves (Moves of them, each
+/// in its unit); then scalars in m: content of the cell before, of the next one and of its own, each less
+/// CarriedPad::reference. At the ends of a pad the cell itself stands for the one that is not there.
+/// A pad that has moved by q sees the journal at r - sum q_k directions_k, and takes F.directions_k.
+template <int Moves, bool Offsets = false>
+struct PadCell {
+  static constexpr int n_nodes = 5 + Moves, own = 1, width = 7, size = 7 * n_nodes;
   static constexpr system::Axes axes = Offsets ? system::Axes::own : system::Axes::any;
   static constexpr bool has_M = false, has_C = true, has_K = true;
   static constexpr system::Family family = system::Family::support;
@@ -125,30 +128,44 @@ struct CarriedCell {
 
   std::shared_ptr<const CarriedPad> pad;
   Index cell = 0;
-  std::array<double, 2> offset{0.0, 0.0};  ///< of journal and housing, m
+  std::array<double, 2> offset{0.0, 0.0};    ///< of journal and housing, m
+  std::array<Vec2, at(Moves)> directions{};  ///< of the pad's centre, m a unit of its scalars
 
   void add_force(const Nodes& x, const system::Context& c, system::ForceX<size>& f) const;
   void add_tangent(const Nodes& x, const system::Context& c, system::TangentX<size>& t) const;
   void add_energy(const Nodes& x, const system::Context& c, system::Energy& e) const;
-  /// The content in balance with the journal where it is, at rest.
+  /// The content in balance with journal and pad where they are, at rest.
   void relax(const Nodes& x, const system::Context& c, std::array<double, own>& q) const;
   /// Force and torques of the cell on journal and housing (lateral_joint.hpp).
   Vector<4> load(const Nodes& x, const system::Context& c) const;
+  /// The cell's unknown where it is full, without pressure, m.
+  double full(const Nodes& x) const;
+  /// Of the journal against the centre of the pad.
+  LateralMotion motion(const Nodes& x, const system::Context& c) const;
 
  private:
+  static constexpr int before = 2 + Moves, next = 3 + Moves, held = 4 + Moves;  ///< nodes
+  static constexpr Index row_of(std::size_t move) { return 14 + 7 * static_cast<Index>(move); }
   using Link = LateralLink<Offsets>;
   static system::Nodes<2> ends(const Nodes& x) { return {x[0], x[1]}; }
   typename Link::Spins spins(const Nodes& x) const {
     return {system::Spin(*x[0]), system::Spin(*x[1])};
   }
-  LateralMotion motion(const Nodes& x, const system::Context& c) const;
   struct Contents {
     double before, own, next;
   };
   Contents contents(const Nodes& x) const;
 };
 
-extern template struct CarriedCell<false>;
-extern template struct CarriedCell<true>;
+extern template struct PadCell<0, false>;
+extern template struct PadCell<0, true>;
+extern template struct PadCell<1, false>;
+extern template struct PadCell<1, true>;
+extern template struct PadCell<2, false>;
+extern template struct PadCell<2, true>;
+
+/// Of a pad that stands in its housing.
+template <bool Offsets = false>
+using CarriedCell = PadCell<0, Offsets>;
 
 }  // namespace whirl::elements

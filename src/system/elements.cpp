@@ -275,6 +275,7 @@ template class Elements<2, 7>;
 template class Elements<3, 7>;
 template class Elements<4, 7>;
 template class Elements<5, 7>;
+template class Elements<6, 7>;
 template class Elements<7, 7>;
 
 }  // namespace whirl::system
