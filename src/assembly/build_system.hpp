@@ -102,9 +102,17 @@ struct FloatingRingBearing {
 
 /// The oil of a film that conserves mass, where the step follows it.
 struct CarriedOil {
-  std::vector<Index> unknowns;  ///< scalar nodes, one a cell
-  /// What they are with the oil in balance and the journal where it is, m.
-  std::function<std::vector<double>(const NodeAt&)> balanced;
+  std::string bearing;           ///< for messages: "bearing 'DE'"
+  std::vector<Index> unknowns;   ///< scalar nodes, one a cell
+  std::vector<Index> following;  ///< those of pads that tilt
+  /// Unknowns of the cells, m, and of pads with the oil in balance and the journal where it is; NaN where
+  /// none is found. What of a pad has inertia stays where it is.
+  struct Balance {
+    std::vector<double> content, followed;
+  };
+  std::function<Balance(const NodeAt&)> balanced;
+  /// Those of full cells without pressure, journal and pads where they are, m.
+  std::function<std::vector<double>(const NodeAt&)> full;
 };
 
 /// What the controller of a magnetic bearing does.

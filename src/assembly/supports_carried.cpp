@@ -1,8 +1,6 @@
-// Journal films that conserve mass, in a motion at large: an element a cell, with a scalar node for the
-// oil in it.
-#include <assembly/film_kernels.hpp>
-#include <assembly/support_parts.hpp>
-#include <elements/films/carried_film.hpp>
+// Films that conserve mass, in a motion at large: an element a cell, with a scalar node for the oil in
+// it.
+#include <assembly/carried_cells.hpp>
 
 #include <fmt/format.h>
 
@@ -17,91 +15,38 @@ bool moves_at_large(const model::Step& s) {
   return transient && !transient->linear;
 }
 
-/// A pad with the nodes of its cells.
-struct PadCells {
-  std::shared_ptr<const elements::CarriedPad> pad;
-  std::vector<Index> oil;
-};
-
-/// The cells of a bearing with the nodes they stand between.
-template <bool Offsets>
-class CellsOnNodes {
- public:
-  using Kernel = elements::CarriedCell<Offsets>;
-  using Between = std::array<Index, Kernel::n_nodes>;
-
-  CellsOnNodes(const meshes::BearingNodes& n, const std::vector<PadCells>& pads) {
-    for (const PadCells& p : pads)
-      for (Index i = 0; i < p.pad->cells(); ++i) {
-        const Index last = p.pad->cells() - 1;
-        Kernel cell;
-        cell.pad = p.pad;
-        cell.cell = i;
-        cell.offset = {n.shaft.offset, n.other.offset};
-        kernels_.push_back(cell);
-        nodes_.push_back({n.shaft.node, n.other.node, p.oil[at(std::max<Index>(i - 1, 0))],
-                          p.oil[at(std::min(i + 1, last))], p.oil[at(i)]});
-      }
-  }
-  std::size_t size() const { return kernels_.size(); }
-  const Kernel& kernel(std::size_t k) const { return kernels_[k]; }
-  const Between& nodes(std::size_t k) const { return nodes_[k]; }
-  /// (F, T_0, T_1) of all cells.
-  Vector<4> load(const NodeAt& node, const system::Context& c) const {
-    Vector<4> sum = Vector<4>::Zero();
-    for (std::size_t k = 0; k < size(); ++k)
-      sum += kernels_[k].load(states(k, node), c);
-    return sum;
-  }
-  Vector<7> on_shaft(const NodeAt& node, const system::Context& c) const {
-    system::ForceX<Kernel::size> f = system::ForceX<Kernel::size>::Zero();
-    for (std::size_t k = 0; k < size(); ++k)
-      kernels_[k].add_force(states(k, node), c, f);
-    return f.template head<7>();
-  }
-  /// What the cells' unknowns are with all in balance.
-  std::vector<double> balanced(const NodeAt& node) const {
-    std::vector<double> out;
-    for (std::size_t k = 0; k < size(); ++k) {
-      std::array<double, 1> q{0.0};
-      kernels_[k].relax(states(k, node), {}, q);
-      out.push_back(q[0]);
-    }
-    return out;
-  }
-
- private:
-  typename Kernel::Nodes states(std::size_t k, const NodeAt& node) const {
-    typename Kernel::Nodes x;
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = &node(nodes_[k][i]);
-    return x;
-  }
-  std::vector<Kernel> kernels_;
-  std::vector<Between> nodes_;
-};
+/// The film of a bearing whose oil can be followed conserves mass.
+bool conserves_mass(const model::BearingLaw& law) {
+  using Cavitation = model::FilmFlow::Cavitation;
+  if (const auto* film = std::get_if<model::FiniteJournal>(&law))
+    return film->flow.cavitation == Cavitation::mass_conserving;
+  const auto* pads = std::get_if<model::TiltingPadJournal>(&law);
+  return pads && pads->flow.cavitation == Cavitation::mass_conserving;
+}
 
 template <bool Offsets>
 void add_cells(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                const std::vector<PadCells>& pads) {
-  const auto cells = std::make_shared<const CellsOnNodes<Offsets>>(n, pads);
-  auto& terms = a.built.support_terms[number_of(a, b)];
+  using Kernel = elements::CarriedCell<Offsets>;
+  const auto cells = std::make_shared<CellsOnNodes<Kernel>>();
+  for (const PadCells& p : pads)
+    for (Index i = 0; i < p.pad->cells(); ++i) {
+      const auto oil = p.around(i);
+      Kernel cell;
+      cell.pad = p.pad;
+      cell.cell = i;
+      cell.offset = {n.shaft.offset, n.other.offset};
+      cells->add(cell, {n.shaft.node, n.other.node, oil[0], oil[1], oil[2]});
+    }
+  add_cell_terms<Kernel>(a, b, n, cells, "cells of oil films");
   CarriedOil oil;
-  for (std::size_t k = 0; k < cells->size(); ++k) {
-    terms.push_back(a.builder.add(cells->kernel(k), cells->nodes(k), "cells of oil films"));
-    oil.unknowns.push_back(cells->nodes(k).back());
-  }
-  terms.erase(std::unique(terms.begin(), terms.end()), terms.end());
-  a.built.support_forces.push_back(
-      {b.name, [cells](const NodeAt& node, const system::Context& c, const ReactionAt&) {
-         const Vector<4> z = cells->load(node, c);
-         return Vec3(0, z[0], z[1]);
-       }});
-  a.built.support_forces.back().moment =
-      [cells, place = n.shaft](const NodeAt& node, const system::Context& c, const ReactionAt&) {
-        return moment_about_place(node(place.node), cells->on_shaft(node, c), place.offset);
-      };
-  oil.balanced = [cells](const NodeAt& node) { return cells->balanced(node); };
+  oil.bearing = name_of(b);
+  for (const PadCells& p : pads)
+    oil.unknowns.insert(oil.unknowns.end(), p.oil.begin(), p.oil.end());
+  oil.balanced = [cells](const NodeAt& node) {
+    return CarriedOil::Balance{cells->balanced(node), {}};
+  };
+  oil.full = [cells](const NodeAt& node) { return cells->full(node); };
   a.built.carried_oil.push_back(std::move(oil));
 }
 
@@ -109,24 +54,23 @@ void add_cells(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 
 bool follows_oil(const model::Model& m, const model::Step& step) {
   return moves_at_large(step) &&
-         std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
-           const auto* film = std::get_if<model::FiniteJournal>(&b.law);
-           return film && film->flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
-         });
+         std::any_of(m.bearings.begin(), m.bearings.end(),
+                     [](const model::Bearing& b) { return conserves_mass(b.law); });
 }
 
-bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-                      const elements::FiniteJournal& film) {
+std::vector<PadCells> add_oil_nodes(
+    Assembly& a, const model::Bearing& b,
+    const std::vector<std::shared_ptr<const elements::CarriedPad>>& pads) {
   const std::vector<model::Step>& steps = a.model.steps;
-  if (std::none_of(steps.begin(), steps.end(), moves_at_large)) return false;
+  std::vector<PadCells> out;
+  if (std::none_of(steps.begin(), steps.end(), moves_at_large)) return out;
   const auto now = std::find_if(steps.begin(), steps.end(),
                                 [&](const model::Step& s) { return s.name == a.step; });
   const bool followed = now != steps.end() && moves_at_large(*now);
   const Index line = a.builder.add_line(fmt::format("oil of {}", name_of(b)));
-  std::vector<PadCells> pads;
-  for (std::size_t k = 0; k < film.surface->arcs().size(); ++k) {
+  for (std::size_t k = 0; k < pads.size(); ++k) {
     PadCells p;
-    p.pad = std::make_shared<const elements::CarriedPad>(film, k);
+    p.pad = pads[k];
     for (Index i = 0; i < p.pad->cells(); ++i) {
       p.oil.push_back(a.builder.add_node(
           {Vec3::Zero(), line,
@@ -135,13 +79,23 @@ bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::Bearin
       // steps of all kinds have the same nodes, so that one may begin where another ended
       if (!followed) a.builder.hold(p.oil.back(), 0);
     }
-    pads.push_back(std::move(p));
+    out.push_back(std::move(p));
   }
-  if (!followed) return false;
+  if (!followed) out.clear();
+  return out;
+}
+
+bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                      const elements::FiniteJournal& film) {
+  std::vector<std::shared_ptr<const elements::CarriedPad>> pads;
+  for (std::size_t k = 0; k < film.surface->arcs().size(); ++k)
+    pads.push_back(std::make_shared<const elements::CarriedPad>(film, k));
+  const std::vector<PadCells> cells = add_oil_nodes(a, b, pads);
+  if (cells.empty()) return false;
   if (n.shaft.offset == 0 && n.other.offset == 0)
-    add_cells<false>(a, b, n, pads);
+    add_cells<false>(a, b, n, cells);
   else
-    add_cells<true>(a, b, n, pads);
+    add_cells<true>(a, b, n, cells);
   return true;
 }
 

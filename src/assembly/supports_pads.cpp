@@ -1,5 +1,6 @@
 // Tilting-pad journal bearings: an element a pad, with scalar nodes for what the pad does.
 #include <core/contract.hpp>
+#include <assembly/carried_cells.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/support_parts.hpp>
 #include <elements/films/oil.hpp>
@@ -76,6 +77,7 @@ class PadRing {
     place_kept(pads_);
   }
   std::size_t pads() const { return pads_.size(); }
+  const std::vector<elements::TiltingPad>& all_pads() const { return pads_; }
   const std::vector<std::vector<Index>>& unknowns() const { return unknowns_; }
   Kernel kernel(std::size_t k) const {
     Kernel out;
@@ -231,14 +233,10 @@ std::string describe_worst(const std::vector<elements::PadStanding>& pads) {
   return out;
 }
 
+/// The pads with their films of the momentary state.
 template <bool Pressed, bool Offsets>
-void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-              const model::TiltingPadJournal& law) {
-  using Ring = PadRing<Pressed, Offsets>;
-  const auto made = std::make_shared<Ring>(a, b, n, law);
-  made->keep_from(add_film_bearing(a, b, law.flow, law.oil, made->pads(),
-                                   [made](const NodeAt& at) { return made->films(at); }));
-  const std::shared_ptr<const Ring> ring = made;
+void add_momentary_pads(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                        const std::shared_ptr<const PadRing<Pressed, Offsets>>& ring) {
   for (std::size_t k = 0; k < ring->pads(); ++k)
     a.built.support_terms[number_of(a, b)].push_back(
         a.builder.add(ring->kernel(k), ring->nodes(k), "tilting pads"));
@@ -252,6 +250,19 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
       [ring, place = n.shaft](const NodeAt& at, const system::Context& c, const ReactionAt&) {
         return moment_about_place(at(place.node), ring->on_shaft(at, c), place.offset);
       };
+}
+
+template <bool Pressed, bool Offsets>
+void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+              const model::TiltingPadJournal& law) {
+  using Ring = PadRing<Pressed, Offsets>;
+  const auto made = std::make_shared<Ring>(a, b, n, law);
+  made->keep_from(add_film_bearing(a, b, law.flow, law.oil, made->pads(),
+                                   [made](const NodeAt& at) { return made->films(at); }));
+  const std::shared_ptr<const Ring> ring = made;
+  const bool conserves = law.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+  if (!conserves || !add_pad_cells<Pressed, Offsets>(a, b, n, ring->all_pads(), ring->unknowns()))
+    add_momentary_pads(a, b, n, ring);
   TiltingPads pads;
   pads.bearing = number_of(a, b);
   for (const auto& p : law.pads())

@@ -252,13 +252,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[[output.vtk]]\nframes = 100\ncontent = [\"line\", \"surface\", \"bearings\"]"},
       {"E47", "a film that conserves mass where it cannot",
        "cavitation = \"mass_conserving\" follows the oil that a ruptured film carries on to the "
-       "next one. Of bearings of type \"journal\" equilibria, small motions and transients know "
-       "it; "
-       "of tilting pads a nonlinear transient does not, where the content of ruptured film depends "
-       "on where pad and journal have been. The housing and its grooves must stand still.",
-       "[[bearing]]\ntype = \"tilting_pad\"\ncavitation = \"reynolds\"    # or, in the step: "
-       "linear "
-       "= true"},
+       "next one, in equilibria, small motions and transients. The housing and its grooves must "
+       "stand still: in a bearing between two shafts that turn they do not.",
+       "[[bearing]]\ntype = \"journal\"\ncavitation = \"reynolds\""},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "
        "carries the motion that the message names. Hold it, or give "

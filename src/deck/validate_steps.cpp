@@ -150,18 +150,6 @@ void check_cavitation(const model::Model& m, Problems& out) {
           fmt::format("bearing '{}': the film conserves mass, and its housing, shaft '{}', turns",
                       b.name, m.shafts[b.to->shaft].name),
           "cavitation = \"reynolds\" in the bearing", b.where);
-    // of a tilting pad the oil is not followed
-    if (std::holds_alternative<model::FiniteJournal>(b.law)) continue;
-    for (const model::Step& s : m.steps) {
-      const auto* t = std::get_if<model::TransientStep>(&s.law);
-      if (!t || t->linear) continue;
-      report(out, "E47",
-             fmt::format("step '{}': the films of the tilting pads of bearing '{}' conserve mass, "
-                         "and in a motion at large what ruptured film holds is followed in "
-                         "bearings of type \"journal\" alone",
-                         s.name, b.name),
-             "cavitation = \"reynolds\" in the bearing, or linear = true in the step", s.where);
-    }
   }
 }
 

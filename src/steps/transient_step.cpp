@@ -123,9 +123,28 @@ void settle_start(run::Job& job, run::StepState& start, const model::TransientSt
     job.settle(start, {}, true);
 }
 
+bool all_finite(const std::vector<double>& x) {
+  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// The oil of a bearing in balance with the journal where it is, and pads that follow at once with it;
+/// false: there is no such balance, and the film begins full.
+bool fill_film(const assembly::CarriedOil& oil, const assembly::NodeAt& node, VecX& q) {
+  assembly::CarriedOil::Balance found = oil.balanced(node);
+  const bool balanced = all_finite(found.content) && all_finite(found.followed);
+  if (balanced)
+    for (std::size_t k = 0; k < found.followed.size(); ++k)
+      q[6 * oil.following[k]] = found.followed[k];
+  else
+    found.content = oil.full(node);
+  for (std::size_t k = 0; k < found.content.size(); ++k)
+    q[6 * oil.unknowns[k]] = found.content[k];
+  return balanced;
+}
+
 /// Oil that no motion has moved yet (zeros, from an equilibrium or from rest) is in balance with the
 /// journals where they are.
-void fill_films(const run::Job& job, run::StepState& start) {
+void fill_films(run::Job& job, const model::Step& step, run::StepState& start) {
   if (job.built.carried_oil.empty()) return;
   system::State& s = start.state;
   system::Workspace w = job.system().make_workspace();
@@ -135,9 +154,12 @@ void fill_films(const run::Job& job, run::StepState& start) {
     if (std::any_of(oil.unknowns.begin(), oil.unknowns.end(),
                     [&s](Index n) { return s.q[6 * n] != 0.0; }))
       continue;
-    const std::vector<double> content = oil.balanced(node);
-    for (std::size_t k = 0; k < content.size(); ++k)
-      s.q[6 * oil.unknowns[k]] = content[k];
+    if (fill_film(oil, node, s.q)) continue;
+    results::warn_of_step(
+        job, step,
+        fmt::format("{}: its oil finds no balance with the journal where the step begins; the film "
+                    "begins full, and the motion with what that does to it",
+                    oil.bearing));
   }
 }
 
@@ -152,7 +174,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
   const Beginning beginning = beginning_of(job, step, law);
   begin_drives(job, start, beginning);
   if (other_run) {
-    fill_films(job, start);
+    fill_films(job, step, start);
     return start;
   }
   using Start = model::TransientStep::Start;
@@ -163,7 +185,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
     start.drives.clear();  // the equilibrium has angles of its own
     begin_drives(job, start, beginning);
   }
-  fill_films(job, start);
+  fill_films(job, step, start);
   if (!steady_motion) run::warn_of_closed_contacts(job, step, "the start", start.state);
   return start;
 }

@@ -275,17 +275,11 @@ TEST(HotFilms, FilmsThatConserveMass) {
   }
 }
 
-// Equilibria and small motions know such films, motions at large those of journals
-// (test_followed_oil.cpp); of pads that tilt these are refused.
+// Equilibria and small motions know such films, and motions at large (test_followed_oil.cpp,
+// test_followed_pads.cpp).
 TEST(HotFilms, WhereFilmsConserveMass) {
   const std::string film = grooved + "viscosity = \"20 mPa.s\"\ncavitation = \"mass_conserving\"\n";
   const std::string drive = "[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"4000 rpm\"\n";
-  const std::string moves =
-      "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\n" + drive;
-  const DeckRun refused(rotor(cold_pads + "cavitation = \"mass_conserving\"\n", 10e3, moves));
-  EXPECT_EQ(refused.exit, 3) << refused.log;
-  EXPECT_TRUE(refused.says("error[E47]") && refused.says("'DE'") && refused.says("tilting pads"))
-      << refused.log;
   const DeckRun small(
       rotor(film, 10e3,
             "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"4000 rpm\"\nmodes = 2\n"
@@ -304,4 +298,39 @@ TEST(HotFilms, WhereFilmsConserveMass) {
             "iso_vg = 32\ncavitation = \"mass_conserving\"\n"
             "heat = { supply_temperature = \"45 degC\" }\n",
         "counts a ruptured film as full");
+}
+
+// Grooves that turn with their housing are refused.
+TEST(HotFilms, HousingsThatTurn) {
+  const std::string film = grooved + "viscosity = \"20 mPa.s\"\ncavitation = \"mass_conserving\"\n";
+  const auto held = [](const char* name, const char* at) {
+    return fmt::format(
+        "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ntype = \"linear\"\n"
+        "kxx = \"1e7 N/m\"\nkyy = \"1e8 N/m\"\nkzz = \"1e8 N/m\"\n",
+        name, at);
+  };
+  const DeckRun refused(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "inner"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 100]]
+[[shaft]]
+name = "outer"
+material = "steel"
+speed_ratio = 0.5
+columns = ["name", "length[mm]", "od[mm]", "id[mm]"]
+rows = [["b", 500, 150, 120]]
+[[bearing]]
+name = "between"
+at = "a:start"
+to = "b:start"
+)" + film + held("inner", "a:end") +
+                        held("left", "b:start") + held("right", "b:end") +
+                        "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"4000 rpm\"\n");
+  EXPECT_NE(refused.exit, 0);
+  EXPECT_TRUE(refused.says("error[E47]") && refused.says("'between'") && refused.says("'outer'"))
+      << refused.log;
 }
