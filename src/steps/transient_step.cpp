@@ -295,9 +295,6 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
       problem_(transient_problem(job, law, start_)),
       t_begin_(resumed_ ? resumed_->t_begin : start_.state.t),
       options_(transient_options(job, law, t_begin_)) {
-  constexpr double of_a_motion = 1e-4;
-  if (beginning_of(job, step, law) == Beginning::in_motion)
-    options_.integrator.scales.share_at_start = of_a_motion;
   warn_of_start();
   outputs_ = results::make_transient_outputs(
       {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value()});

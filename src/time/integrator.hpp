@@ -37,9 +37,6 @@ struct Scales {
   double floor_displacement = 1e-13;  ///< m
   double floor_tilt = 1e-13;          ///< rad
   double floor_internal = 1e-9;       ///< own units
-  /// Of the coordinates at start(): displacements and tilts of a motion that goes on are not small
-  /// because they have not changed yet; 0: of a rotor at rest.
-  double share_at_start = 0.0;
   double length = 1.0;                ///< a length of the model, m: converts tilt to displacement
   double cross_floor = 1e-6;
   /// Unknowns that something finer than the response of their kind depends on (the journal in a

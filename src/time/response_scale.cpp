@@ -45,9 +45,6 @@ void ResponseScale::reset(CRef q) {
   largest_twist_error_ = 0.0;
   if (largest_error_.size() > 0) keep_errors();
   observe(q);
-  start_floor_.fill(0.0);
-  for (const Kind k : {Kind::displacement, Kind::tilt})
-    start_floor_[of(k)] = options_.share_at_start * size_[of(k)];
 }
 
 void ResponseScale::set_spin_inertia(CRef inertia) {
@@ -90,10 +87,9 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max({u, o.displacement, o.floor_displacement, start_floor_[of(Kind::displacement)],
-                offset_share_ * size_[of(Kind::displacement)]});
-  g = std::max({g, o.tilt, o.floor_tilt, start_floor_[of(Kind::tilt)],
-                offset_share_ * size_[of(Kind::tilt)]});
+  u = std::max(
+      {u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
+  g = std::max({g, o.tilt, o.floor_tilt, offset_share_ * size_[of(Kind::tilt)]});
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
   g = std::max(g, o.cross_floor * u0 / o.length);
@@ -188,7 +184,6 @@ double ResponseScale::kept_norm(const VecX& x, double turned) const {
 void ResponseScale::save(std::vector<double>& out) const {
   out.insert(out.end(), swept_.begin(), swept_.end());
   out.insert(out.end(), size_.begin(), size_.end());
-  out.insert(out.end(), start_floor_.begin(), start_floor_.end());
   twist_.save(out);
   out.insert(out.end(), {largest_turned_, sum_turned_, errors_, largest_twist_error_});
   for (const VecX* x : {&low_, &high_, &inertia_, &largest_error_, &sum_of_errors_})
@@ -198,8 +193,7 @@ void ResponseScale::save(std::vector<double>& out) const {
 const double* ResponseScale::restore(const double* in) {
   std::copy_n(in, kinds_count, swept_.begin());
   std::copy_n(in + kinds_count, kinds_count, size_.begin());
-  std::copy_n(in + 2 * kinds_count, kinds_count, start_floor_.begin());
-  in += 3 * kinds_count;
+  in += 2 * kinds_count;
   in = twist_.restore(in);
   for (double* c : {&largest_turned_, &sum_turned_, &errors_, &largest_twist_error_})
     *c = *in++;

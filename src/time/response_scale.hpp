@@ -81,8 +81,7 @@ class ResponseScale {
   Scales options_;
   double offset_share_ = 1e-6;
   std::array<double, kinds_count> swept_{}, size_{},
-      used_{},         ///< range and size of the run so far; of the weights
-      start_floor_{};  ///< of the state that a motion goes on from
+      used_{};  ///< range and size of the run so far; of the weights
   VecX low_, high_, weight_, inertia_;
   void weigh_singly();
   double turned(CRef x) const;

@@ -296,6 +296,6 @@ name = "s"
   const auto motion = swing.csv("s.csv");
   double least = 0;
   for (const auto& row : motion.rows)
-    least = std::min(least, row[motion.column("p.phi [rad]")]);
+    least = std::min(least, row[motion.column("p phi [rad]")]);
   EXPECT_NEAR(least, -std::numbers::pi, 1e-3);
 }

@@ -192,10 +192,12 @@ TEST_P(KeepEverything, GivesTheSame) {
       const double own = std::max(scale[group(a.columns[c])],
                                   a.columns[c].ends_with("[m]") ? 1e-6 * largest : 0.0);
       const double size = amplitude != a.columns.end() ? largest : own;
-      EXPECT_LE(worst, (instant    ? std::sqrt(allowed)
-                        : reaction ? std::max(allowed, 5e-3)
-                                   : allowed) *
-                           size)
+      // a half cycle at the edge of a class is in this one or the next
+      const double counted = a.columns[c].starts_with("cycles") ? 0.5 : 0.0;
+      EXPECT_LE(worst, counted + (instant    ? std::sqrt(allowed)
+                                  : reaction ? std::max(allowed, 5e-3)
+                                             : allowed) *
+                                     size)
           << e.path().filename() << " " << a.columns[c];
     }
   }

@@ -225,17 +225,20 @@ TEST(MasslessLines, KeepTheSpeedThatAStepBeginsWith) {
   const std::string speed = "initial_speed = \"6000 rpm\"\n";
   const std::string settled = "[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"6000 rpm\"\n" +
                               transient + "from = \"s\"\n";
+  // with damping in the shaft: the inertia of the unbalance alone rings at 30 MHz otherwise
   const std::string goes_on =
       transient + speed +
       "[[step]]\nname = \"u\"\ntype = \"transient\"\nduration = \"0.5 s\"\nfrom = \"t\"\n";
   for (const std::string& steps : {transient + speed, settled, goes_on}) {
-    const DeckRun d(point_mass(steps));
+    const bool chain = steps == goes_on;
+    const DeckRun d(point_mass(steps, chain ? "damping = { internal_beta = \"2e-5 s\" }" : ""));
     ASSERT_EQ(d.exit, 0) << d.log;
     const Columns t = d.csv("t.csv");
     EXPECT_NEAR(t.last().at("speed [rpm]"), 6000, 1e-6) << d.log;
-    EXPECT_NEAR(largest(t, "p.y [m]"), amplitude, 1e-6 * amplitude);
-    if (steps == goes_on) {
+    if (chain) {
       EXPECT_NEAR(d.csv("u.csv").last().at("speed [rpm]"), 6000, 1e-6);
+    } else {
+      EXPECT_NEAR(largest(t, "p.y [m]"), amplitude, 1e-6 * amplitude);
     }
     EXPECT_TRUE(d.says("it keeps the speed that a step starts with")) << d.log;
   }

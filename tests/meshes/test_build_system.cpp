@@ -526,10 +526,18 @@ TEST(BuildSystem, CasingDoesNotTurnAndAPointMassRotorKeepsItsSpin) {
   j.bearings = {held("l", 0, {true, true, true, false, false, false}),
                 held("r", 1, {false, true, true, false, false, false})};
   const Built b = build(j);
-  EXPECT_TRUE(b.spins[0].prescribed);
-  EXPECT_EQ(b.spins[0].angle->at(2.0).f, 100.0);
+  EXPECT_FALSE(b.spins[0].prescribed);
   for (Index n = 0; n < 3; ++n)
     EXPECT_FALSE(b.system.active()[S(6 * n + system::spin_phi)]);
+  ASSERT_EQ(b.coasting.size(), 1u);
+  const auto angle = [&b](double t) {
+    for (const system::Hold& h : b.system.holds())
+      if (h.unknown == system::spin_phi) return h.law->at(t).f;
+    return nan;
+  };
+  EXPECT_EQ(angle(2.0), 100.0);
+  b.coasting[0].begin(1.0, 3.0, -20.0);  // time, angle, spin
+  EXPECT_EQ(angle(2.0), -17.0);
 }
 
 TEST(BuildSystem, ImpossibleBodiesAndContradictions) {

@@ -137,8 +137,8 @@ TEST(WeightedSamples, OfCorrelatedKeysCountByTheirJointDensities) {
   const Design d({read_factor("a.x=normal(0, 1) drawn normal(1, 1.3)"),
                   read_factor("a.y=normal(0, 1) drawn uniform(-5, 5)")},
                  40000, Sampling::random, 3, {read_correlation("a.x,a.y=0.6")});
-  const std::vector<double> hits = runs_of(
-      d, [](const std::vector<double>& x) { return x[0] > 1.5 && x[1] > 1 ? 1.0 : 0.0; });
+  const std::vector<double> hits =
+      runs_of(d, [](const std::vector<double>& x) { return x[0] > 1.5 && x[1] > 1 ? 1.0 : 0.0; });
   double sum = 0, of_hits = 0;
   for (std::int64_t run = 0; run < d.runs(); ++run) {
     sum += d.weight(run);
