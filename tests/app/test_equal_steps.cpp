@@ -49,7 +49,7 @@ TEST(EqualSteps, ShortOnesAreNotSaidToBeTooLong) {
   ASSERT_EQ(exact.exit, 0) << exact.log;
   const Columns right = exact.csv("t.csv");
   for (const std::string method : {"radau5", "gauss4", "gauss6"}) {
-    const DeckRun d(in_steps_of("method = \"" + method + "\"\ndt = \"0.1 ms\"\n"));
+    const DeckRun d(in_steps_of("method = \"" + method + "\"\ndt = \"0.05 ms\"\n"));
     ASSERT_EQ(d.exit, 0) << d.log;
     EXPECT_LT(off(d, right), 1e-4) << method;
     EXPECT_FALSE(d.says("too long")) << d.log;

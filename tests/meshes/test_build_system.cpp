@@ -533,7 +533,7 @@ TEST(BuildSystem, CasingDoesNotTurnAndAPointMassRotorKeepsItsSpin) {
   const auto angle = [&b](double t) {
     for (const system::Hold& h : b.system.holds())
       if (h.unknown == system::spin_phi) return h.law->at(t).f;
-    return nan;
+    return whirl::nan;
   };
   EXPECT_EQ(angle(2.0), 100.0);
   b.coasting[0].begin(1.0, 3.0, -20.0);  // time, angle, spin
