@@ -397,13 +397,16 @@ void Stepper::take_step(double h, const StepReport& report) {
 }
 
 Statistics Stepper::judged_statistics() const {
+  // by the scales that the motion so far makes, whether a step was made since a restore or not
+  ResponseScale scale = scale_;
+  scale.begin_step(VecX::Zero(n_));
   Statistics s = statistics_;
-  s.twist = scale_.twist();
-  s.twist_error = scale_.twist_error() / allowance();
-  s.twists_alone = scale_.twists_alone();
+  s.twist = scale.twist();
+  s.twist_error = scale.twist_error() / allowance();
+  s.twists_alone = scale.twists_alone();
   if (options_.dt_fixed > 0.0) {
-    s.error_max = scale_.largest_error() / allowance();
-    s.error_sum = scale_.mean_error() / allowance() * static_cast<double>(s.accepted);
+    s.error_max = scale.largest_error() / allowance();
+    s.error_sum = scale.mean_error() / allowance() * static_cast<double>(s.accepted);
   }
   return s;
 }
