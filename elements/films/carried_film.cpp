@@ -1,4 +1,5 @@
 #include <elements/films/carried_film.hpp>
+#include <elements/films/pad_mount.hpp>
 #include <elements/films/turbulence.hpp>
 #include <core/contract.hpp>
 #include <core/dual.hpp>
@@ -327,7 +328,7 @@ void PadCell<Moves, Offsets>::add_force(const Nodes& x, const system::Context& c
   Link{offset}.add_force(spins(x), z, at_ends);
   f.template head<14>() += at_ends;
   for (std::size_t k = 0; k < directions.size(); ++k)
-    f[row_of(k)] += z.head<2>().dot(directions[k]);
+    f[pad_mount::row_of(k)] += z.head<2>().dot(directions[k]);
   f[7 * held] += pad->row_factor() * (x[held]->du.x() + now.outflow);
 }
 
@@ -369,11 +370,7 @@ void PadCell<Moves, Offsets>::add_tangent(const Nodes& x, const system::Context&
   Link{offset}.add_tangent(s, z, of_load, false, at_ends);
   t.C.template topLeftCorner<14, 14>() += at_ends.C;
   t.K.template topLeftCorner<14, 14>() += at_ends.K;
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    const Eigen::RowVector2d along = -directions[k].transpose();
-    t.C.template block<1, 14>(row_of(k), 0) += along * at_ends.C.template middleRows<2>(1);
-    t.K.template block<1, 14>(row_of(k), 0) += along * at_ends.K.template middleRows<2>(1);
-  }
+  pad_mount::add_film_tangent(Link{offset}, s, directions, of_load, at_ends, t);
   at_ends.C.setZero();
   at_ends.K.setZero();
   Link{offset}.add_tangent(s, Vector<4>::Zero(), of_row, false, at_ends);
@@ -386,20 +383,12 @@ void PadCell<Moves, Offsets>::add_tangent(const Nodes& x, const system::Context&
     Link{offset}.add_force(s, by_contents.col(k - by_before), of_ends);
     t.K.template block<14, 1>(0, column) += of_ends;
     for (std::size_t j = 0; j < directions.size(); ++j)
-      t.K(row_of(j), column) +=
+      t.K(pad_mount::row_of(j), column) +=
           directions[j].dot(by_contents.col(k - by_before).template head<2>());
     t.K(row_held, column) += row * now.outflow.g[k];
   }
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    const Index column = row_of(k);
-    const Vector<4> by_move = -of_load.r * directions[k];
-    system::ForceX<14> of_ends = system::ForceX<14>::Zero();
-    Link{offset}.add_force(s, by_move, of_ends);
-    t.K.template block<14, 1>(0, column) += of_ends;
-    for (std::size_t j = 0; j < directions.size(); ++j)
-      t.K(row_of(j), column) += directions[j].dot(by_move.template head<2>());
-    t.K(row_held, column) -= of_row.r.row(0).dot(directions[k]);
-  }
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    t.K(row_held, pad_mount::row_of(k)) -= of_row.r.row(0).dot(directions[k]);
   t.C(row_held, row_held) += row;
 }
 

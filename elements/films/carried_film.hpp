@@ -145,7 +145,6 @@ struct PadCell {
 
  private:
   static constexpr int before = 2 + Moves, next = 3 + Moves, held = 4 + Moves;  ///< nodes
-  static constexpr Index row_of(std::size_t move) { return 14 + 7 * static_cast<Index>(move); }
   using Link = LateralLink<Offsets>;
   static system::Nodes<2> ends(const Nodes& x) { return {x[0], x[1]}; }
   typename Link::Spins spins(const Nodes& x) const {

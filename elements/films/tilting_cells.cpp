@@ -1,4 +1,5 @@
 #include <elements/films/tilting_cells.hpp>
+#include <elements/films/pad_mount.hpp>
 #include <elements/films/root_between.hpp>
 #include <core/contract.hpp>
 
@@ -156,42 +157,19 @@ Vec2 PadMount<Pressed, Offsets>::place(const Nodes& x) const {
 template <bool Pressed, bool Offsets>
 void PadMount<Pressed, Offsets>::add_force(const Nodes& x, const system::Context&,
                                            system::ForceX<size>& f) const {
-  const TiltingPad& pad = rest->pad();
-  f[14] += pad.tilt_stiffness * x[2]->u.x() + pad.tilt_damping * x[2]->du.x() +
-           pad.inertia * x[2]->ddu.x();
-  if constexpr (Pressed)
-    f[21] += pad.pivot_stiffness * x[3]->u.x() + pad.pivot_damping * x[3]->du.x() +
-             pad.mass * x[3]->ddu.x();
+  pad_mount::add_force<Pressed>(rest->pad(), x, f);
 }
 
 template <bool Pressed, bool Offsets>
 void PadMount<Pressed, Offsets>::add_tangent(const Nodes&, const system::Context&,
                                              system::TangentX<size>& t) const {
-  const TiltingPad& pad = rest->pad();
-  t.K(14, 14) += pad.tilt_stiffness;
-  t.C(14, 14) += pad.tilt_damping;
-  t.M(14, 14) += pad.inertia;
-  if constexpr (Pressed) {
-    t.K(21, 21) += pad.pivot_stiffness;
-    t.C(21, 21) += pad.pivot_damping;
-    t.M(21, 21) += pad.mass;
-  }
+  pad_mount::add_tangent<Pressed>(rest->pad(), t);
 }
 
 template <bool Pressed, bool Offsets>
 void PadMount<Pressed, Offsets>::add_energy(const Nodes& x, const system::Context&,
                                             system::Energy& e) const {
-  const TiltingPad& pad = rest->pad();
-  const double tilt = x[2]->u.x(), tilt_rate = x[2]->du.x();
-  e.kinetic += 0.5 * pad.inertia * tilt_rate * tilt_rate;
-  e.elastic += 0.5 * pad.tilt_stiffness * tilt * tilt;
-  e.dissipated += pad.tilt_damping * tilt_rate * tilt_rate;
-  if constexpr (Pressed) {
-    const double pressed = x[3]->u.x(), pressed_rate = x[3]->du.x();
-    e.kinetic += 0.5 * pad.mass * pressed_rate * pressed_rate;
-    e.elastic += 0.5 * pad.pivot_stiffness * pressed * pressed;
-    e.dissipated += pad.pivot_damping * pressed_rate * pressed_rate;
-  }
+  pad_mount::add_energy<Pressed>(rest->pad(), x, e);
 }
 
 template <bool Pressed, bool Offsets>

@@ -1,4 +1,5 @@
 #include <elements/films/tilting_pad.hpp>
+#include <elements/films/pad_mount.hpp>
 #include <elements/films/root_between.hpp>
 #include <core/contract.hpp>
 
@@ -182,12 +183,9 @@ void TiltingPadJoint<Pressed, Offsets>::add_force(const Nodes& x, const system::
   system::ForceX<14> at_ends = system::ForceX<14>::Zero();
   Link{offset}.add_force(s, z, at_ends);
   f.template head<14>() += at_ends;
-  const Vec2 F = z.head<2>();
-  f[14] += F.dot(pad.direction(0)) + pad.tilt_stiffness * m.q.x() + pad.tilt_damping * m.rate.x() +
-           pad.inertia * x[2]->ddu.x();
-  if constexpr (Pressed)
-    f[21] += F.dot(pad.direction(1)) + pad.pivot_stiffness * m.q.y() +
-             pad.pivot_damping * m.rate.y() + pad.mass * x[3]->ddu.x();
+  for (std::size_t k = 0; k < own; ++k)
+    f[pad_mount::row_of(k)] += z.head<2>().dot(pad.direction(static_cast<int>(k)));
+  pad_mount::add_force<Pressed>(pad, x, f);
 }
 
 template <bool Pressed, bool Offsets>
@@ -204,33 +202,11 @@ void TiltingPadJoint<Pressed, Offsets>::add_tangent(const Nodes& x, const system
   Link{offset}.add_tangent(s, z, t, false, at_ends);
   k.C.template topLeftCorner<14, 14>() += at_ends.C;
   k.K.template topLeftCorner<14, 14>() += at_ends.K;
-  for (int i = 0; i < own; ++i) {
-    const Vec2 a = pad.direction(i);
-    const int row = 14 + 7 * i;
-    // rows 1, 2 of the ends are -dF/dX
-    k.K.template block<1, 14>(row, 0) -= a.transpose() * at_ends.K.template middleRows<2>(1);
-    k.C.template block<1, 14>(row, 0) -= a.transpose() * at_ends.C.template middleRows<2>(1);
-    const Vector<4> z_q = -t.r * a, z_rate = -t.v * a;
-    system::ForceX<14> column = system::ForceX<14>::Zero();
-    Link{offset}.add_force(s, z_q, column);
-    k.K.template block<14, 1>(0, row) += column;
-    column.setZero();
-    Link{offset}.add_force(s, z_rate, column);
-    k.C.template block<14, 1>(0, row) += column;
-    for (int j = 0; j < own; ++j) {
-      const Vec2 b = pad.direction(j);
-      k.K(14 + 7 * j, row) += b.dot(z_q.head<2>());
-      k.C(14 + 7 * j, row) += b.dot(z_rate.head<2>());
-    }
-  }
-  k.K(14, 14) += pad.tilt_stiffness;
-  k.C(14, 14) += pad.tilt_damping;
-  k.M(14, 14) += pad.inertia;
-  if constexpr (Pressed) {
-    k.K(21, 21) += pad.pivot_stiffness;
-    k.C(21, 21) += pad.pivot_damping;
-    k.M(21, 21) += pad.mass;
-  }
+  std::array<Vec2, own> directions;
+  for (std::size_t i = 0; i < own; ++i)
+    directions[i] = pad.direction(static_cast<int>(i));
+  pad_mount::add_film_tangent(Link{offset}, s, directions, t, at_ends, k);
+  pad_mount::add_tangent<Pressed>(pad, k);
 }
 
 template <bool Pressed, bool Offsets>
@@ -238,14 +214,7 @@ void TiltingPadJoint<Pressed, Offsets>::add_energy(const Nodes& x, const system:
                                                    system::Energy& e) const {
   const Motion m = motion_of(x, c);
   FilmLaw<FiniteJournal>{pad.film}.energy(pad.seen(m.journal, m.q, m.rate), e);
-  e.kinetic += 0.5 * pad.inertia * m.rate.x() * m.rate.x();
-  e.elastic += 0.5 * pad.tilt_stiffness * m.q.x() * m.q.x();
-  e.dissipated += pad.tilt_damping * m.rate.x() * m.rate.x();
-  if constexpr (Pressed) {
-    e.kinetic += 0.5 * pad.mass * m.rate.y() * m.rate.y();
-    e.elastic += 0.5 * pad.pivot_stiffness * m.q.y() * m.q.y();
-    e.dissipated += pad.pivot_damping * m.rate.y() * m.rate.y();
-  }
+  pad_mount::add_energy<Pressed>(pad, x, e);
 }
 
 template <bool Pressed, bool Offsets>

@@ -173,6 +173,7 @@ extern template class Elements<2, 7>;
 extern template class Elements<3, 7>;
 extern template class Elements<4, 7>;
 extern template class Elements<5, 7>;
+extern template class Elements<6, 7>;
 extern template class Elements<7, 7>;
 
 template <Kernel K>
