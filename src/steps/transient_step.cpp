@@ -255,6 +255,7 @@ class TransientRun {
   void execute();
 
  private:
+  void begin_as_it_turns();
   void warn_of_start() const;
   void add_own_parts();
   run::Checkpoint checkpoint_of(const system::State& state,
@@ -295,6 +296,7 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
       problem_(transient_problem(job, law, start_)),
       t_begin_(resumed_ ? resumed_->t_begin : start_.state.t),
       options_(transient_options(job, law, t_begin_)) {
+  if (beginning_of(job, step, law) == Beginning::in_motion) begin_as_it_turns();
   warn_of_start();
   outputs_ = results::make_transient_outputs(
       {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value()});
@@ -309,6 +311,16 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
   for (const auto& output : outputs_)
     output->open();
   if (law.checkpoint > 0.0) write_checkpoints();
+}
+
+/// A motion that goes on: its accelerations hold what the steps before it left of motions that they did
+/// not resolve, and say nothing of the step to begin with. The error test shortens one that is too long.
+void TransientRun::begin_as_it_turns() {
+  constexpr double turned = 0.01;  // rad
+  const double spin = std::abs(start_.state.v[6 * job_.reference() + system::spin_phi]);
+  time::Options& o = options_.integrator;
+  if (o.dt_first == 0.0 && o.dt_fixed == 0.0 && spin > 0.0)
+    o.dt_first = std::min(turned / spin, o.dt_max);
 }
 
 void TransientRun::warn_of_start() const {

@@ -33,10 +33,25 @@ double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, cons
 
 bool turns(int component) { return component >= 3; }
 
+/// From a line's first node to its farthest, m.
+VecX lengths_of_lines(const system::System& system) {
+  VecX length = VecX::Zero(system.lines());
+  std::vector<Index> first(at(system.lines()), -1);
+  for (Index i = 0; i < system.nodes(); ++i) {
+    if (system.node(i).scalar) continue;
+    const Index line = system.node(i).line;
+    if (first[at(line)] < 0) first[at(line)] = i;
+    const Vec3 from = system.node(first[at(line)]).position;
+    length[line] = std::max(length[line], (system.node(i).position - from).norm());
+  }
+  return length;
+}
+
 /// The same of masses. An unbalance is an eccentricity of what stands at its node, and ties the
 /// displacements there to the angles: lateral motion to twist, axial motion to tilt. A motion is acted
 /// back upon through both, by the square of the coupling, which is to be compared with the inertia of
-/// the whole line, however little of it stands at the node.
+/// the whole line, however little of it stands at the node. Of point masses the stiffness tells what a
+/// tilt is against a displacement: the length of the line.
 double difference_of_masses(const system::System& system, const la::BlockMatrix<6>& x,
                             const la::BlockMatrix<6>& y, const VecX& diagonal) {
   VecX mass = VecX::Zero(system.lines()), rotary = mass;
@@ -45,6 +60,9 @@ double difference_of_masses(const system::System& system, const la::BlockMatrix<
     mass[line] += diagonal.segment<3>(6 * i).maxCoeff();
     rotary[line] += diagonal.segment<2>(6 * i + system::gamma2).maxCoeff();
   }
+  const VecX length = lengths_of_lines(system);
+  constexpr double arm = 0.1;  // of the length
+  rotary = rotary.cwiseMax(mass.cwiseProduct((arm * length).cwiseAbs2()));
   const la::BlockPattern& p = x.pattern();
   la::BlockMatrix<6> rest = y;  // y and what is no unbalance
   double worst = 0.0;
