@@ -1,6 +1,7 @@
 // Transients of rotors on journal films that conserve mass, through the program: where they begin, where
 // they settle, that steps of other kinds go on from them.
 #include "deck_run.hpp"
+#include "disk_between_films.hpp"
 
 #include <fmt/format.h>
 
@@ -30,46 +31,11 @@ cavitation = "mass_conserving"
 )",
                        name, at, more);
   };
-  return R"(format = 1
-[model]
-gravity = "9.81 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["left", 300, 80, 1], ["right", 300, 80, 1]]
-[[disk]]
-name = "disk"
-at = "left:end"
-od = "400 mm"
-id = "80 mm"
-width = "150 mm"
-material = "steel"
-[[bearing]]
-name = "thrust"
-at = "left:mid"
-type = "linear"
-kxx = "1e7 N/m"
-cxx = "1e4 N.s/m"
-[[probe]]
-name = "DE"
-at = "left:start"
-[[drive]]
-at = "left:start"
-type = "speed"
-speed = "3000 rpm"
-[output]
-report = false
-every = "1 ms"
-quantities = ["speed", "probes", "energy"]
-)" + bearing("DE", "left:start") +
-         bearing("NDE", "right:end") + steps;
+  return whirl::test::disk_between(bearing("DE", "left:start") + bearing("NDE", "right:end"),
+                                   steps);
 }
-const std::string at_rest = "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n";
-std::string moves(const char* start, const char* duration) {
-  return fmt::format("[[step]]\nname = \"t\"\ntype = \"transient\"\n{}\nduration = \"{}\"\n", start,
-                     duration);
-}
+const std::string& at_rest = whirl::test::settled_at_speed;
+using whirl::test::moves;
 
 struct Ends {
   double y0, z0, y1, z1;  ///< of the journal, m
