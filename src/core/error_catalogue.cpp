@@ -106,7 +106,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "with an offset where wanted "
        "(\"body2:end-20 mm\"), or as a distance from the left end (\"1.14 m\"). A section alone "
        "means its start. The name of a disk or bearing is a "
-       "place too, and so is the shaft (\"hp:end\"). With several shafts write \"hp/body2:mid\".",
+       "place too, and so is the shaft (\"hp:end\"). With several shafts write \"hp/body2:mid\". A "
+       "name of a section, a shaft, a disk or "
+       "a bearing that would mean two places must not stand alone.",
        "at = \"body2:middle\"   # wrong\nat = \"body2:mid\"      # right"},
       {"E19", "beyond the shaft",
        "The place lies before the start or after the end of its shaft. The message states the "

@@ -125,7 +125,8 @@ constexpr const char* how_to_read =
     "is dimensionless; zero needs no unit, but as a temperature. A place is `\"section:mid\"` "
     "(`:start`, `:end`), with "
     "an offset where wanted (`\"section:end - 20 mm\"`), a distance from the left end (`\"1.14 "
-    "m\"`), or the name of a disk or bearing; with several shafts "
+    "m\"`), or the name of a disk or bearing (if no section or shaft of that name begins "
+    "elsewhere); with several shafts "
     "`\"shaft/section:mid\"`. `${name}` stands for a parameter.\n\n";
 
 constexpr const char* axes_and_signs =

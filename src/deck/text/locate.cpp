@@ -87,6 +87,7 @@ class PlaceReader {
     if (same > 0)
       return fail("E18", fmt::format("'{}' stands on more than one shaft", best->name),
                   fmt::format("write \"{}/{}\"", model_.shafts[best->shaft].name, rest_));
+    if (std::optional<Located> r = read_ambiguity(names, *best)) return std::move(*r);
     double s = best->start;
     rest_ = rest_.substr(best->name.size());
     if (rest_.starts_with(':')) {
@@ -143,6 +144,7 @@ class PlaceReader {
       if (!rest_.starts_with(n.name)) continue;
       const char next = rest_.size() > n.name.size() ? rest_[n.name.size()] : '\0';
       if (next != '\0' && next != ':' && next != '+' && next != '-' && next != ' ') continue;
+      if (n.rank != 2 && rest_.substr(n.name.size()).starts_with(":support")) continue;
       if (best && n.name.size() == best->name.size() && n.rank == best->rank &&
           n.shaft != best->shaft) {
         ++same;
@@ -155,6 +157,38 @@ class PlaceReader {
       }
     }
     return best;
+  }
+
+  /// Of places of one name the word behind it means those along a section or shaft, or without one any.
+  std::optional<Located> read_ambiguity(const std::vector<Named>& names, const Named& best) const {
+    const std::string_view word = rest_.substr(best.name.size());
+    const bool along =
+        word.starts_with(":start") || word.starts_with(":mid") || word.starts_with(":end");
+    if (!along && word.starts_with(':')) return std::nullopt;
+    const double slack = 1e-9 * std::max(model_.shafts[best.shaft].length(), 1e-12);
+    const auto apart = [&](const Named& n) {
+      return n.shaft != best.shaft || std::abs(n.start - best.start) > slack ||
+             (along && std::abs(n.end - best.end) > slack);
+    };
+    for (const Named& n : names) {
+      if (n.name != best.name || (n.rank == best.rank && n.rank != 2) || !apart(n)) continue;
+      if (along && n.rank == 2) continue;
+      return fail("E18",
+                  n.rank == best.rank
+                      ? fmt::format("'{}' is a disk and a bearing, at different places", best.name)
+                      : fmt::format("'{}' is a {} and a {}, at different places", best.name,
+                                    noun(best.rank), noun(n.rank)),
+                  n.rank == best.rank
+                      ? "give one of them another name"
+                      : fmt::format("\"{}:start\" (or :mid, :end) is a place on the {}; or give "
+                                    "one of them another name",
+                                    best.name, noun(best.rank)),
+                  offset(rest_), best.name.size());
+    }
+    return std::nullopt;
+  }
+  static std::string_view noun(int rank) {
+    return rank == 0 ? "section" : rank == 1 ? "shaft" : "disk or bearing";
   }
 
   Located unknown_name(const std::vector<Named>& names) const {
