@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace whirl::steps {
 
@@ -46,13 +47,13 @@ struct Truncation {
   double change = 0;  ///< 1/s, with two harmonics more, the largest
 };
 
-/// Where the growth is largest: of each band, and of all speeds, three at most.
+/// Where the growth is largest: of each band, nine at most, and of all speeds.
 std::vector<double> telling_speeds(const BandResult& r) {
   std::vector<InstabilityBand> bands = r.bands;
   std::sort(bands.begin(), bands.end(),
             [](const InstabilityBand& a, const InstabilityBand& b) { return a.growth > b.growth; });
   std::vector<double> out;
-  for (std::size_t k = 0; k < std::min<std::size_t>(bands.size(), 2); ++k)
+  for (std::size_t k = 0; k < std::min<std::size_t>(bands.size(), 9); ++k)
     out.push_back(bands[k].speed);
   const auto top = std::max_element(r.growth.begin(), r.growth.end());
   out.push_back(r.speeds[static_cast<std::size_t>(top - r.growth.begin())]);
@@ -74,6 +75,33 @@ Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep
     t.change = std::max(t.change, std::abs(own - other));
   }
   return t;
+}
+
+struct Solved {
+  std::unique_ptr<analysis::RotatingAxes> axes;
+  BandResult bands;
+  Truncation cut;
+};
+
+/// Bands with as many harmonics as it takes: motions that the last ones should have joined, but are
+/// copies without them, grow where nothing does.
+Solved solve_with_enough_harmonics(results::FrequencyStep& s, const model::StabilityStep& law,
+                                   const std::vector<double>& speeds, run::ProgressLine& line) {
+  constexpr Index first = 3, most = 11, more = 2;
+  constexpr double accuracy = 0.02;  // of the largest growth
+  Solved out;
+  for (Index harmonics = first;; harmonics += more) {
+    out.axes = std::make_unique<analysis::RotatingAxes>(s.linear, speeds.back(), harmonics);
+    out.bands = solve_bands(law, *out.axes, speeds, line);
+    if (out.axes->constant()) return out;
+    out.cut = find_truncation(s, law, out.bands, *out.axes);
+    const double nothing =
+        analysis::unnoticed_share(*out.axes) * std::abs(out.axes->speed(out.bands.speeds.back()));
+    double growth = 0.0;
+    for (const InstabilityBand& b : out.bands.bands)
+      growth = std::max(growth, b.growth);
+    if (out.cut.change <= std::max(nothing, accuracy * growth) || harmonics >= most) return out;
+  }
 }
 
 /// "unstable from 2000 to 2100 rpm, 4000 to above 6000 rpm"
@@ -211,9 +239,10 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
   const bool cracked = results::breathes(job.model);
-  analysis::RotatingAxes axes(s.linear, speeds.back());
   run::ProgressLine progress(step.name, job.options.quiet);
-  const BandResult r = solve_bands(law, axes, speeds, progress);
+  const Solved solved = solve_with_enough_harmonics(s, law, speeds, progress);
+  const analysis::RotatingAxes& axes = *solved.axes;
+  const BandResult& r = solved.bands;
   if (!cracked) s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
   add_band_table(s, r);
   add_growth_table(s, r);
@@ -230,11 +259,12 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   std::string known = counts_of(r);
   std::string in_short = known;
   known += fmt::format(
-      "; bands narrower than the distance of the speeds are found at critical speeds only; growth "
+      "; bands narrower than the distance of the speeds are found at critical speeds and halfway "
+      "between two bands only; growth "
       "below {:.0e} of the speed is taken for none",
       analysis::unnoticed_share(axes));
   if (!axes.constant()) {
-    const Truncation cut = find_truncation(s, law, r, axes);
+    const Truncation& cut = solved.cut;
     known += fmt::format(
         "; Hill's determinant is cut after {} harmonics: with {} the growth rates at {} speed{} of "
         "largest growth change by {:.1g} 1/s",

@@ -363,7 +363,8 @@ VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
   }
   for (Index k = 0; k < x.size(); ++k)
     if (!active_[idx(k)]) x[k] = 0.0;
-  if (other > 1e-6 * size)
+  constexpr double nothing = 1e-12;  // N: what is left of unbalances that cancel
+  if (other > std::max(1e-6 * size, nothing))
     throw run_error("E88", "forces once a revolution that do not turn with the asymmetric rotor",
                     "a transient step has no such limit");
   const auto direct = la::make_direct_solver<double>(*pattern_, active_);
@@ -652,6 +653,40 @@ InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& sam
   return band;
 }
 
+/// Two motions that have bands of their own, at their critical speeds, have one together halfway between
+/// (a combination resonance), which may lie between the speeds looked at.
+std::vector<InstabilityBand> combined_bands(BandSearch& search,
+                                            const std::vector<InstabilityBand>& bands) {
+  constexpr double aside = 0.02;  // of the way from a band to the place halfway
+  std::vector<InstabilityBand> out;
+  const auto visit = [&](double Omega) { return Visited{Omega, search.at(Omega)}; };
+  const auto grows = [&](const Visited& x) { return x.growth.rate > search.noise(x.speed); };
+  const auto lies_in = [](double Omega) {
+    return [Omega](const InstabilityBand& b) { return !(Omega < b.low) && !(Omega > b.high); };
+  };
+  for (std::size_t i = 0; i < bands.size(); ++i)
+    for (std::size_t j = i + 1; j < bands.size(); ++j) {
+      const double from = bands[i].high, to = bands[j].low;
+      const double halfway = 0.25 * (bands[i].low + from + to + bands[j].high);
+      if (!std::isfinite(halfway)) continue;
+      if (std::any_of(bands.begin(), bands.end(), lies_in(halfway))) continue;
+      if (std::any_of(out.begin(), out.end(), lies_in(halfway))) continue;
+      const Visited middle = visit(halfway);
+      if (!grows(middle)) continue;
+      // the neighbours on both sides, whatever lies between the two
+      double left = from, right = to;
+      for (const InstabilityBand& b : bands) {
+        if (b.high < halfway) left = std::max(left, b.high);
+        if (b.low > halfway) right = std::min(right, b.low);
+      }
+      const std::vector<Visited> samples{visit(left + aside * (halfway - left)), middle,
+                                         visit(right - aside * (right - halfway))};
+      if (!grows(samples.front()) && !grows(samples.back()))
+        out.push_back(measure_band(search, samples, 1, 1));
+    }
+  return out;
+}
+
 }  // namespace
 
 double unnoticed_share(const RotatingAxes& axes) {
@@ -691,6 +726,10 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     out.bands.push_back(measure_band(search, samples, k, last));
     k = last;
   }
+  for (InstabilityBand& band : combined_bands(search, out.bands))
+    out.bands.push_back(std::move(band));
+  std::sort(out.bands.begin(), out.bands.end(),
+            [](const InstabilityBand& a, const InstabilityBand& b) { return a.speed < b.speed; });
   out.evaluations = search.evaluations;
   out.counted = search.counted;
   out.uncounted = search.uncounted;

@@ -118,8 +118,8 @@ double unnoticed_share(const RotatingAxes& axes);
 double largest_growth(RotatingAxes& axes, double Omega, Index modes);
 
 /// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the
-/// speeds are found where they belong to a critical speed (whirl at the speed itself); combination
-/// bands must be as wide as that distance to be seen.
+/// speeds are found where they belong to a critical speed (whirl at the speed itself), or lie halfway
+/// between two bands that were found; other combination bands must be as wide as that distance to be seen.
 /// @pre ascending speeds, at least one mode.
 BandResult find_bands(RotatingAxes& axes, const BandOptions& options);
 
