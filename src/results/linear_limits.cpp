@@ -28,7 +28,11 @@ namespace {
 /// Free motions of a step's rotor that grow, whether its response lists modes or not.
 class Growth {
  public:
-  explicit Growth(FrequencyStep& s) : step_(s), solver_(s.linear, options()), mesh_(s) {}
+  Growth(FrequencyStep& s, analysis::Motion motion)
+      : step_(s),
+        motion_(motion),
+        solver_(s.linear, options()),
+        mesh_(s) {}
   /// What grows at a speed, or "".
   std::string at(double Omega) {
     const std::optional<analysis::WhirlMode> mode = fastest(solver_, Omega);
@@ -52,8 +56,9 @@ class Growth {
   double known_to() const { return known_to_; }
 
  private:
-  static analysis::ModesOptions options() {
+  analysis::ModesOptions options() const {
     analysis::ModesOptions o;
+    o.motion = motion_;
     o.count = 4;
     o.judge = true;
     o.real_roots = true;
@@ -78,6 +83,7 @@ class Growth {
   }
 
   FrequencyStep& step_;
+  analysis::Motion motion_;
   analysis::WhirlSolver solver_;
   MeshAccuracy mesh_;
   std::optional<RefinedModel> refined_;
@@ -85,11 +91,53 @@ class Growth {
   double known_to_ = infinity;
 };
 
-/// In axes that turn with it the rotor has lost stiffness in an odd number of directions: it bends
-/// out at its own speed.
-std::string growth_at(analysis::RotatingAxes& axes, double Omega) {
-  if (Omega == 0.0 || axes.negative_stiffnesses(Omega) % 2 == 0) return {};
-  return "the shaft, whose stiffness turns with it, bends out at its own speed";
+/// The band of speeds in which free motions of a rotor grow whose stiffness or inertia turns with it: the
+/// first of those between the speeds. Harmonics left out of Hill's equations may make one of nothing:
+/// it is there with two more of them too.
+std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
+                                                    const std::vector<double>& speeds) {
+  constexpr Index modes = 8, more = 2;
+  analysis::BandOptions o;
+  o.modes = modes;
+  for (const double Omega : speeds)
+    if (Omega != 0.0) o.speeds.push_back(std::abs(Omega));
+  if (o.speeds.empty()) return std::nullopt;
+  std::sort(o.speeds.begin(), o.speeds.end());
+  analysis::RotatingAxes axes(s.linear, o.speeds.back());
+  const analysis::BandResult found = analysis::find_bands(axes, o);
+  if (found.bands.empty() || axes.constant())
+    return found.bands.empty() ? std::nullopt : std::optional(found.bands.front());
+  analysis::RotatingAxes finer(s.linear, o.speeds.back(), axes.harmonics() + more);
+  for (const analysis::InstabilityBand& band : found.bands) {
+    const double nothing = analysis::unnoticed_share(finer) * std::abs(finer.speed(band.speed));
+    const double growth = analysis::largest_growth(finer, band.speed, modes);
+    if (growth > std::max(nothing, 0.5 * band.growth)) return band;
+  }
+  return std::nullopt;
+}
+
+void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
+  const std::optional<analysis::InstabilityBand> band = band_among(s, speeds);
+  if (!band) return;
+  const auto edge = [](double Omega, const char* beyond, double last) {
+    return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(std::abs(last)))
+                             : fmt::format("{:.6g}", to_rpm(Omega));
+  };
+  const auto [least, most] = std::minmax_element(
+      speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  Diagnostic d;
+  d.code = "W13";
+  d.message = fmt::format(
+      "step '{}': the rotor, whose stiffness turns with it, is unstable from {} to {} rpm ({}): "
+      "the "
+      "steady response is never reached there",
+      s.step.name, edge(band->low, "below", *least), edge(band->high, "above", *most),
+      band->frequency > 1e-6 * band->speed
+          ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
+                        to_rpm(band->speed))
+          : "it bends out at its own speed");
+  d.hint = "a stability step finds the bands, a transient step what the rotor does in them";
+  warn(s.job, std::move(d));
 }
 
 }  // namespace
@@ -104,18 +152,19 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
   warn(job, std::move(d));
 }
 
-void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
+void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  Growth free_motions(s);
-  std::optional<analysis::RotatingAxes> axes;
-  if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one())
-    axes.emplace(s.linear, speeds.back());
+  if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one()) {
+    warn_of_band(s, speeds);
+    return;
+  }
+  Growth free_motions(s, motion);
   for (const double Omega : speeds) {
     Diagnostic d;
     d.code = "W13";
     try {
-      const std::string growth = axes ? growth_at(*axes, Omega) : free_motions.at(Omega);
+      const std::string growth = free_motions.at(Omega);
       if (growth.empty()) continue;
       d.message = fmt::format(
           "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never "

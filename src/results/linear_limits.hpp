@@ -89,7 +89,8 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 
 /// W13: at one of these speeds (reference, rad/s) a free motion grows, and the steady response there
 /// is never reached.
-void warn_of_growth(FrequencyStep& s, std::vector<double> speeds);
+void warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
+                    analysis::Motion motion = analysis::Motion::all);
 
 /// Rounding of the speeds at the ends of a table, rad/s.
 double table_slack(const model::TableBearing& table);

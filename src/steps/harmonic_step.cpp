@@ -342,7 +342,7 @@ void HarmonicRun::judge_mesh() {
   results::report_mesh_accuracy(s_, points_.back().Omega, beyond * top);
   results::warn_of_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
   const double first = points_.front().Omega, last = points_.back().Omega;
-  results::warn_of_growth(s_, {first, 0.5 * (first + last), last});
+  results::warn_of_growth(s_, {first, 0.5 * (first + last), last}, results::motion_of(law_.motion));
 }
 
 /// At the largest response, beside the shapes.

@@ -475,17 +475,15 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   return o;
 }
 
-/// The operating speeds and their middle, the middle and the end of the range, and the highest
-/// response. The bands of an asymmetric rotor
-/// are narrow, and a look at one is cheap.
+/// The operating speeds and their middle, both ends and the middle of the range, and the highest
+/// response.
 std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Largest& response,
-                                    bool asymmetric, const std::vector<double>& operating) {
-  const int parts = asymmetric ? 16 : 2;
+                                    const std::vector<double>& operating) {
+  constexpr int parts = 2;
   std::vector<double> out = operating;
   if (operating.size() > 1) out.push_back(0.5 * (operating[0] + operating[1]));
   if (response.amplitude > 0) out.push_back(response.speed);
-  const bool reversed = speeds.front() < 0;  // then the first is a fast one
-  for (int k = reversed ? 0 : 1; k <= parts; ++k)
+  for (int k = 0; k <= parts; ++k)
     out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
   return out;
 }
@@ -576,7 +574,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   if (o.speeds.back() <= 0)
     for (double& x : operating)
       x = -std::abs(x);
-  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor, operating));
+  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, operating));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, shown, o.outputs), false);
