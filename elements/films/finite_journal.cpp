@@ -104,6 +104,13 @@ PadMedium FiniteJournal::medium(std::size_t k, const FilmPoint& p) const {
   return m;
 }
 
+double FiniteJournal::least_film(const FilmPoint& p) const {
+  double least = infinity;
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k)
+    least = std::min(least, gap(k, p).pad * pad(k).smallest_clearance(place(k, p).e));
+  return least;
+}
+
 bool FiniteJournal::inside(const FilmPoint& p) const {
   WHIRL_EXPECTS(surface != nullptr);
   if (!p.r.allFinite() || !p.w.allFinite() || !std::isfinite(p.slip)) return false;

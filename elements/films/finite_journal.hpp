@@ -132,6 +132,9 @@ struct FiniteJournal {
   void evaluate(const FilmPoint& p, FilmForce& f) const;
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 
+  /// Film where it is thinnest, m; negative: the journal is outside.
+  double least_film(const FilmPoint& p) const;
+
   /// The clearances of pad k as they are: c_p and c_p - c_b, m.
   struct Gap {
     double pad, lift;

@@ -23,6 +23,40 @@ void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance
 
 namespace {
 
+/// What a journal has used of the clearance, m: that less the film where it is thinnest. Beside the middle
+/// of its lobes a bush is wider than the clearance as assembled.
+double used_clearance(const elements::ShortJournal&, const elements::LateralMotion& m) {
+  return m.r.norm();
+}
+double used_clearance(const elements::FiniteJournal& film, const elements::LateralMotion& m) {
+  if (film.surface->lift() == 0.0) return m.r.norm();
+  const double thinnest = film.least_film(elements::FilmLaw<elements::FiniteJournal>::point(m));
+  return std::max(0.0, film.surface->clearance() - thinnest);
+}
+
+/// Where on its way from the middle outwards a journal has used that much of the clearance.
+template <class Film>
+Vec2 place_where_used(const Film& film, elements::LateralMotion m, double wanted) {
+  const Vec2 out = m.r.norm() > 0.0 ? Vec2(m.r.normalized()) : Vec2(0.0, -1.0);
+  m.r = wanted * out;
+  if (used_clearance(film, m) >= wanted * (1.0 - 1e-12)) return m.r;
+  double low = wanted, high = 2.0 * wanted;
+  const auto used = [&](double way) {
+    m.r = way * out;
+    return used_clearance(film, m);
+  };
+  for (int k = 0; k < 60 && used(high) < wanted; ++k)
+    high *= 2.0;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (used(middle) < wanted ? low : high) = middle;
+  }
+  return low * out;
+}
+
+bool is_lobed(const elements::ShortJournal&) { return false; }
+bool is_lobed(const elements::FiniteJournal& film) { return film.surface->lift() > 0.0; }
+
 /// Of films: clearance, and the load they carry near it at the present spin in the direction of the
 /// displacement.
 template <class Film>
@@ -33,31 +67,37 @@ void add_film_condition(Assembly& a, const model::Bearing& b, const meshes::Bear
                             (film.radius / clearance) * (film.radius / clearance);
   follow_closely(a, n, clearance);
   const Pair nodes{n.shaft.node, n.other.node};
-  a.built.conditions.push_back(
-      {number_of(a, b), b.name, b.where,
-       [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
-         elements::LateralMotion m;
-         m.r = r(at);
-         m.v.setZero();
-         m.a.setZero();
-         m.spin = at(nodes[0]).spin();
-         m.housing_spin = at(nodes[1]).spin();
-         m.kept = at(nodes[0]).kept;
-         Vector<4> z;
-         law.force(m, z);
-         SupportCondition::State s;
-         s.film = true;
-         s.gap = clearance;
-         s.displacement = m.r.norm();
-         s.load = z.head<2>().norm();
-         m.r = s.displacement > 0
-                   ? Vec2(m.r * (SupportCondition::believed * clearance / s.displacement))
-                   : Vec2(0.0, -SupportCondition::believed * clearance);
-         law.force(m, z);
-         s.capacity = z.head<2>().norm();
-         return s;
-       },
-       sommerfeld});
+  const auto motion = [r = displacement_of(n), nodes](const NodeAt& at) {
+    elements::LateralMotion m;
+    m.r = r(at);
+    m.v.setZero();
+    m.a.setZero();
+    m.spin = at(nodes[0]).spin();
+    m.housing_spin = at(nodes[1]).spin();
+    m.kept = at(nodes[0]).kept;
+    return m;
+  };
+  a.built.conditions.push_back({number_of(a, b), b.name, b.where,
+                                [motion, law, clearance](const NodeAt& at) {
+                                  elements::LateralMotion m = motion(at);
+                                  Vector<4> z;
+                                  law.force(m, z);
+                                  SupportCondition::State s;
+                                  s.film = true;
+                                  s.gap = clearance;
+                                  s.displacement = used_clearance(law.film, m);
+                                  s.load = z.head<2>().norm();
+                                  m.r = place_where_used(law.film, m,
+                                                         SupportCondition::believed * clearance);
+                                  law.force(m, z);
+                                  s.capacity = z.head<2>().norm();
+                                  return s;
+                                },
+                                sommerfeld});
+  if (is_lobed(film))
+    a.built.conditions.back().reach = [motion, film](const NodeAt& at) {
+      return used_clearance(film, motion(at));
+    };
 }
 
 template <class Film>

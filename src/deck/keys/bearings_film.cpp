@@ -151,7 +151,9 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
 
 template <class Film>
 void dimensions(Visitor& v, Film& b,
-                const char* clearance = "radial clearance (half the difference of diameters)") {
+                const char* clearance =
+                    "radial clearance as assembled (half the difference of diameters, of lobes "
+                    "where it is least)") {
   v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
   v.quantity(required("length"), b.length, "mm", positive, "axial length of the film");
   v.quantity(required("clearance"), b.clearance, "um", positive, clearance);
