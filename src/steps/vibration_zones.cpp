@@ -164,13 +164,34 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
 
 namespace {
 
-/// Sum of the amounts of unbalances, as they are at time 0, and of disks off their axis, kg m.
+/// Sum over the places on a shaft of what unbalances, as they are at time 0, and disks off their axis
+/// amount to there, kg m.
 double unbalance_of(const model::Model& m, std::size_t shaft) {
-  double sum = 0;
-  for (const model::Unbalance& u : m.unbalances)
-    if (u.at.shaft == shaft) sum += std::abs(u.amount * (u.factor ? u.factor->at(0.0).f : 1.0));
+  const double near = 1e-9 * m.shafts[shaft].length();
+  struct Place {
+    double from, to;
+    Vec2 amount;
+  };
+  std::vector<Place> places;
+  const auto add = [&](double from, double to, const Vec2& amount) {
+    const auto there = std::find_if(places.begin(), places.end(), [&](const Place& p) {
+      return std::abs(p.from - from) <= near && std::abs(p.to - to) <= near;
+    });
+    if (there == places.end())
+      places.push_back({from, to, amount});
+    else
+      there->amount += amount;
+  };
+  for (const model::Unbalance& u : m.unbalances) {
+    if (u.at.shaft != shaft) continue;
+    const double amount = u.amount * (u.factor ? u.factor->at(0.0).f : 1.0);
+    add(u.at.s, u.to ? u.to->s : u.at.s, amount * Vec2(std::cos(u.phase), std::sin(u.phase)));
+  }
   for (const model::Disk& d : m.disks)
-    if (d.at.shaft == shaft) sum += d.mass * d.offset.tail<2>().norm();
+    if (d.at.shaft == shaft) add(d.at.s, d.at.s, d.mass * d.offset.tail<2>());
+  double sum = 0.0;
+  for (const Place& p : places)
+    sum += p.amount.norm();
   return sum;
 }
 
@@ -183,7 +204,8 @@ void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
   t.title = "Balance grade after ISO 21940-11";
   t.columns = {{"shaft", "-", ""},
                {"mass", "kg", ""},
-               {"unbalance", "g mm", "sum of the amounts, disks off the axis included"},
+               {"unbalance", "g mm",
+                "sum over the places of the resultants there, disks off the axis included"},
                {"permissible", "g mm", "of the grade, at the highest operating speed"},
                {"grade", "mm/s", "of the unbalances"},
                {"result", "-", ""}};
