@@ -36,6 +36,20 @@ const char* left_out_motion(const model::StepLaw& law) {
       law);
 }
 
+/// Loads and unbalances with a law of time, in steps that have none.
+void add_what_changes(const model::Model& m, std::vector<std::string>& out) {
+  const auto say = [&out](const char* what, const std::string& name, const LawPtr& factor) {
+    if (factor)
+      out.push_back(fmt::format(
+          "{} '{}' at its value at t = 0, {:.4g} times what is given: the step has no time", what,
+          name, factor->at(0.0).f));
+  };
+  for (const model::PointLoad& x : m.loads)
+    say("load", x.name, x.factor);
+  for (const model::Unbalance& x : m.unbalances)
+    say("unbalance", x.name, x.factor);
+}
+
 }  // namespace
 
 std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step,
@@ -57,6 +71,7 @@ std::vector<std::string> held_in_step(const run::Job& job, const model::Step& st
                               job.system().node(k / 6).name,
                               k % 6 == system::ux ? "the axial motion of" : "the turning of",
                               job.system().line_name(job.system().node(k / 6).line)));
+  if (!in_time) add_what_changes(job.model, out);
   if (const char* motion = left_out_motion(step.law)) out.emplace_back(motion);
   out.insert(out.end(), job.built.held.begin(), job.built.held.end());
   return out;

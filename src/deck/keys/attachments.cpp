@@ -154,7 +154,8 @@ void describe(Visitor& v, model::Unbalance& u) {
                                    "kg", positive, "mass the grade refers to");
   v.quantity("phase", u.phase, "deg", any, "body angle of the heavy spot, from y towards z");
   describe_law(v, optional("factor", "1"), u.factor, "",
-               "law of time that multiplies the amount (blade loss, growth)");
+               "law of time that multiplies the amount (blade loss, growth); steps without time "
+               "take it at 0");
   if (!v.clean()) return;
   if (amount && (has_grade || has_speed || has_mass))
     v.error("E26",
@@ -278,7 +279,7 @@ void describe(Visitor& v, model::PointLoad& l) {
   v.vector("force", l.force, "N", "force along x, y, z");
   v.vector("moment", l.moment, "N.m", "moment about x, y, z");
   describe_law(v, optional("factor", "1"), l.factor, "",
-               "law of time that multiplies force and moment");
+               "law of time that multiplies force and moment; steps without time take it at 0");
   if (v.clean() && !v.given("force") && !v.given("moment"))
     v.error("E05", nullptr, fmt::format("load '{}' has neither 'force' nor 'moment'", l.name));
 }
