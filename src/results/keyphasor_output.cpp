@@ -82,21 +82,41 @@ std::vector<analysis::Point> points_of(const run::Job& job, const Keyphasor& key
   return points;
 }
 
-/// As the bandwidth says, or so many more, up to 12, that nothing is let through of what other
-/// shafts do once a turn of theirs: 2/M orders away and further (OrderFilter).
+/// Share of an amplitude that a filter of M turns lets through d orders away (OrderFilter).
+double let_through(int turns, double away) {
+  const double x = turns * away;
+  if (x < 1e-9) return 1.0;
+  if (std::abs(x - 1.0) < 1e-9) return 0.5;
+  return std::abs(std::sin(pi * x) / (pi * x * (1.0 - x * x)));
+}
+
+/// As the bandwidth says, or so many more, up to 12, that as little as can be is let through of what
+/// other shafts do once a turn of theirs: nothing where 2/M, 3/M, .. orders lie between.
 int turns_of(const run::Job& job, const Keyphasor& keyphasor) {
   constexpr int most = 12;
   const int asked = job.model.output.tracking.filter_turns();
   const Index line = job.mesh.nodes[at(keyphasor.node)].line;
   if (asked == 1 || line < 0) return asked;
   const double own = std::abs(job.model.shafts[at(line)].speed_ratio);
+  std::vector<double> others;  // orders away
   int turns = asked;
   for (const model::Shaft& other : job.model.shafts) {
     const double away = std::abs(std::abs(other.speed_ratio) / own - 1.0);
     if (!other.rotating || !(own > 0) || !(away > 1e-9)) continue;
+    others.push_back(away);
     turns = std::max(turns, static_cast<int>(std::min<double>(most, std::ceil(2.0 / away - 1e-9))));
   }
-  return turns;
+  const auto largest = [&others](int m) {
+    double share = 0.0;
+    for (const double away : others)
+      share = std::max(share, let_through(m, away));
+    return share;
+  };
+  constexpr double nothing = 1e-6;
+  int best = turns;
+  for (int m = turns; m <= most && largest(best) > nothing; ++m)
+    if (largest(m) < largest(best)) best = m;
+  return best;
 }
 
 KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyphasor)

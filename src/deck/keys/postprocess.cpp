@@ -35,7 +35,9 @@ void describe(Visitor& v, model::TrackingOutput& o) {
   v.quantity("bandwidth", o.bandwidth, "", between(0.02, 2),
              "width of the filter at half amplitude, in multiples of the speed: a Hann window of "
              "2/bandwidth turns about each turn (2: each turn by itself), of up to 12 where shafts "
-             "turn at different speeds, so that each keyphasor sees its own");
+             "turn at different speeds, so that each keyphasor sees its own: of the others' 1X "
+             "nothing at a ratio such as "
+             "1.5, about 0.01 or less where speeds differ by a quarter or more");
   v.quantities(optional("orbit_speeds", "the largest orbit alone"), o.orbit_speeds, "rpm", any, -1,
                "orbits are shown where the spin passes these speeds, beside the largest one");
   v.integer("orbit_turns", o.orbit_turns, between(1, 20), "turns an orbit shows");
