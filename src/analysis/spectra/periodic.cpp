@@ -726,8 +726,8 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     out.bands.push_back(measure_band(search, samples, k, last));
     k = last;
   }
-  for (InstabilityBand& band : combined_bands(search, out.bands))
-    out.bands.push_back(std::move(band));
+  for (const InstabilityBand& band : combined_bands(search, out.bands))
+    out.bands.push_back(band);
   std::sort(out.bands.begin(), out.bands.end(),
             [](const InstabilityBand& a, const InstabilityBand& b) { return a.speed < b.speed; });
   out.evaluations = search.evaluations;
