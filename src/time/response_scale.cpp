@@ -11,9 +11,9 @@ constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
 /// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off
 /// of the size is near.
 constexpr double least_share = 1e-6;
-/// Torque on a sagging shaft shakes it by some 1e-5 of the twist, at all of its frequencies: bending below
-/// this share of the twist is not to be followed.
-constexpr double shaken_by_twist = 1e-3;
+/// Torque on a sagging shaft shakes it by less than the sag times the twist, at all of its frequencies. Motion
+/// below ten times that, and below a hundredth of the sag, is not to be followed.
+constexpr double shaken_by_twist = 10.0, most_shaken = 1e-2;
 /// Rounding of the coordinates a correction carries, in units of the last place: sums over a row of
 /// matrices.
 constexpr double rounding_units = 4.0 * std::numeric_limits<double>::epsilon();
@@ -90,18 +90,17 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max(
-      {u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
-  g = std::max({g, o.tilt, o.floor_tilt, offset_share_ * size_[of(Kind::tilt)]});
-  const double u0 = u;
-  u = std::max(u, o.cross_floor * o.length * g);
-  g = std::max(g, o.cross_floor * u0 / o.length);
+  double share = offset_share_;
   if (!twist_.empty()) {
     const double twist = std::max(twist_.swept(), 0.5 * twist_.size(dq));
     twist_scale_ = std::max(twist, twist_floor_);
-    u = std::max(u, shaken_by_twist * o.length * twist);
-    g = std::max(g, shaken_by_twist * twist);
+    share = std::max(share, std::min(shaken_by_twist * twist, most_shaken));
   }
+  u = std::max({u, o.displacement, o.floor_displacement, share * size_[of(Kind::displacement)]});
+  g = std::max({g, o.tilt, o.floor_tilt, share * size_[of(Kind::tilt)]});
+  const double u0 = u;
+  u = std::max(u, o.cross_floor * o.length * g);
+  g = std::max(g, o.cross_floor * u0 / o.length);
   const bool fine = spin_by_twist_ && o.follow_twist && !twist_.empty();
   s[of(Kind::spin_angle)] = fine ? std::min(twist_scale_, o.spin_angle) : o.spin_angle;
   s[of(Kind::held)] = infinity;
