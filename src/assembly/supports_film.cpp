@@ -45,8 +45,10 @@ Vec2 place_where_used(const Film& film, elements::LateralMotion m, double wanted
     m.r = way * out;
     return used_clearance(film, m);
   };
-  for (int k = 0; k < 60 && used(high) < wanted; ++k)
+  for (int k = 0; used(high) < wanted; ++k) {
+    if (k == 10) return wanted * out;  // there is no pad on that side
     high *= 2.0;
+  }
   for (int k = 0; k < 50; ++k) {
     const double middle = 0.5 * (low + high);
     (used(middle) < wanted ? low : high) = middle;

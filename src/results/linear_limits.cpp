@@ -116,8 +116,24 @@ std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
   return std::nullopt;
 }
 
+/// @throws e unless it says that a table of frequencies ends: modes below one that reaches the excitation.
+void warn_of_unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
+  if (e.diagnostics().front().code != "E81") throw e;
+  Diagnostic d;
+  d.code = "W13";
+  d.message = fmt::format("step '{}': whether free motions grow at {:.6g} rpm is not known: {}",
+                          s.step.name, to_rpm(Omega), e.diagnostics().front().message);
+  d.hint = "extend the frequencies of the table, or write extrapolate = \"hold\"";
+  warn(s.job, std::move(d));
+}
+
 void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
-  const std::optional<analysis::InstabilityBand> band = band_among(s, speeds);
+  std::optional<analysis::InstabilityBand> band;
+  try {
+    band = band_among(s, speeds);
+  } catch (const Error& e) {
+    warn_of_unknown_growth(s, speeds.back(), e);
+  }
   if (!band) return;
   const auto edge = [](double Omega, const char* beyond, double last) {
     return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(std::abs(last)))
@@ -128,9 +144,8 @@ void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
   Diagnostic d;
   d.code = "W13";
   d.message = fmt::format(
-      "step '{}': the rotor, whose stiffness turns with it, is unstable from {} to {} rpm ({}): "
-      "the "
-      "steady response is never reached there",
+      "step '{}': the rotor, whose stiffness turns with it, is unstable from {} to {} rpm "
+      "({}): the steady response is never reached there",
       s.step.name, edge(band->low, "below", *least), edge(band->high, "above", *most),
       band->frequency > 1e-6 * band->speed
           ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
@@ -155,7 +170,9 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one()) {
+  const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
+  if (bends && s.turns_as_one() &&
+      (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model))) {
     warn_of_band(s, speeds);
     return;
   }
@@ -171,14 +188,10 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
           "reached there",
           s.step.name, to_rpm(Omega), growth);
       d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
+      warn(s.job, std::move(d));
     } catch (const Error& e) {
-      // modes below a table that reaches the excitation
-      if (e.diagnostics().front().code != "E81") throw;
-      d.message = fmt::format("step '{}': whether free motions grow at {:.6g} rpm is not known: {}",
-                              s.step.name, to_rpm(Omega), e.diagnostics().front().message);
-      d.hint = "extend the frequencies of the table, or write extrapolate = \"hold\"";
+      warn_of_unknown_growth(s, Omega, e);
     }
-    warn(s.job, std::move(d));
     return;
   }
   if (free_motions.known_to() == infinity) return;

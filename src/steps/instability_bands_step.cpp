@@ -265,13 +265,20 @@ void run_instability_bands(run::Job& job, const model::Step& step,
       analysis::unnoticed_share(axes));
   if (!axes.constant()) {
     const Truncation& cut = solved.cut;
-    known += fmt::format(
-        "; Hill's determinant is cut after {} harmonics: with {} the growth rates at {} speed{} of "
-        "largest growth change by {:.1g} 1/s",
-        cut.harmonics, cut.harmonics + 2, cut.speeds, cut.speeds == 1 ? "" : "s", cut.change);
+    known +=
+        cut.change > 0.0
+            ? fmt::format(
+                  "; Hill's determinant is cut after {} harmonics: with {} the growth rates at "
+                  "{} speed{} of largest growth change by {:.1g} 1/s",
+                  cut.harmonics, cut.harmonics + 2, cut.speeds, cut.speeds == 1 ? "" : "s",
+                  cut.change)
+            : fmt::format(
+                  "; Hill's determinant is cut after {} harmonics: more join motions by "
+                  "less than 1e-6 of the speed",
+                  cut.harmonics);
     in_short += fmt::format("; Hill with {} harmonics, ", cut.harmonics) +
                 (cut.change > 0.0 ? fmt::format("growth right to {:.1g} 1/s", cut.change)
-                                  : "growth the same with two more");
+                                  : "more join motions by less than 1e-6 of the speed");
     io::Value& v = s.summary()["certificate"];
     v["harmonics"] = cut.harmonics;
     v["change of growth with two more [1/s]"] = cut.change;
