@@ -92,25 +92,26 @@ class Growth {
 };
 
 /// The band of speeds in which free motions of a rotor grow whose stiffness or inertia turns with it: the
-/// first of those between the speeds. Harmonics left out of Hill's equations may make one of nothing:
+/// first of those between the speeds, all in the same sense; the band is that of their magnitudes. Harmonics left out of Hill's equations may make one of nothing:
 /// it is there with two more of them too.
 std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
                                                     const std::vector<double>& speeds) {
   constexpr Index modes = 8, more = 2;
   analysis::BandOptions o;
   o.modes = modes;
+  o.sense = speeds.front() < 0.0 ? -1.0 : 1.0;
   for (const double Omega : speeds)
-    if (Omega != 0.0) o.speeds.push_back(std::abs(Omega));
-  if (o.speeds.empty()) return std::nullopt;
+    o.speeds.push_back(std::abs(Omega));
   std::sort(o.speeds.begin(), o.speeds.end());
-  analysis::RotatingAxes axes(s.linear, o.speeds.back());
+  const double probed = o.sense * o.speeds.back();
+  analysis::RotatingAxes axes(s.linear, probed);
   const analysis::BandResult found = analysis::find_bands(axes, o);
   if (found.bands.empty() || axes.constant())
     return found.bands.empty() ? std::nullopt : std::optional(found.bands.front());
-  analysis::RotatingAxes finer(s.linear, o.speeds.back(), axes.harmonics() + more);
+  analysis::RotatingAxes finer(s.linear, probed, axes.harmonics() + more);
   for (const analysis::InstabilityBand& band : found.bands) {
     const double nothing = analysis::unnoticed_share(finer) * std::abs(finer.speed(band.speed));
-    const double growth = analysis::largest_growth(finer, band.speed, modes);
+    const double growth = analysis::largest_growth(finer, o.sense * band.speed, modes);
     if (growth > std::max(nothing, 0.5 * band.growth)) return band;
   }
   return std::nullopt;
@@ -135,9 +136,10 @@ void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
     warn_of_unknown_growth(s, speeds.back(), e);
   }
   if (!band) return;
-  const auto edge = [](double Omega, const char* beyond, double last) {
-    return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(std::abs(last)))
-                             : fmt::format("{:.6g}", to_rpm(Omega));
+  const double sense = speeds.front() < 0.0 ? -1.0 : 1.0;
+  const auto edge = [sense](double Omega, const char* beyond, double last) {
+    return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(last))
+                             : fmt::format("{:.6g}", to_rpm(sense * Omega));
   };
   const auto [least, most] = std::minmax_element(
       speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -149,7 +151,7 @@ void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
       s.step.name, edge(band->low, "below", *least), edge(band->high, "above", *most),
       band->frequency > 1e-6 * band->speed
           ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
-                        to_rpm(band->speed))
+                        to_rpm(sense * band->speed))
           : "it bends out at its own speed");
   d.hint = "a stability step finds the bands, a transient step what the rotor does in them";
   warn(s.job, std::move(d));
@@ -173,7 +175,11 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
   const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
   if (bends && s.turns_as_one() &&
       (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model))) {
-    warn_of_band(s, speeds);
+    std::vector<double> backwards, forwards;
+    for (const double Omega : speeds)
+      if (Omega != 0.0) (Omega < 0.0 ? backwards : forwards).push_back(Omega);
+    for (const std::vector<double>& sense : {backwards, forwards})
+      if (!sense.empty()) warn_of_band(s, sense);
     return;
   }
   Growth free_motions(s, motion);

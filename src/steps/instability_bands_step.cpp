@@ -27,10 +27,14 @@ namespace {
 using analysis::BandResult;
 using analysis::InstabilityBand;
 
+/// -1: the rotor runs backwards.
+double sense_of(const std::vector<double>& speeds) { return speeds.back() > 0.0 ? 1.0 : -1.0; }
+
 BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& axes,
                        const std::vector<double>& speeds, run::ProgressLine& line) {
   analysis::BandOptions o;
   o.modes = law.modes;
+  o.sense = sense_of(speeds);
   o.progress = [&](double share, double Omega) {
     line.update(share, share < 1.0 ? fmt::format("{:.5g} rpm", to_rpm(Omega))
                                    : fmt::format("band about {:.5g} rpm", to_rpm(Omega)));
@@ -63,14 +67,14 @@ std::vector<double> telling_speeds(const BandResult& r) {
 }
 
 Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep& law,
-                           const BandResult& r, analysis::RotatingAxes& axes) {
+                           const BandResult& r, double sense, analysis::RotatingAxes& axes) {
   Truncation t;
   t.harmonics = static_cast<int>(axes.harmonics());
   constexpr Index more = 2;
-  analysis::RotatingAxes finer(s.linear, r.speeds.back(), axes.harmonics() + more);
+  analysis::RotatingAxes finer(s.linear, sense * r.speeds.back(), axes.harmonics() + more);
   for (const double Omega : telling_speeds(r)) {
-    const double own = analysis::largest_growth(axes, Omega, law.modes),
-                 other = analysis::largest_growth(finer, Omega, law.modes);
+    const double own = analysis::largest_growth(axes, sense * Omega, law.modes),
+                 other = analysis::largest_growth(finer, sense * Omega, law.modes);
     ++t.speeds;
     t.change = std::max(t.change, std::abs(own - other));
   }
@@ -94,7 +98,7 @@ Solved solve_with_enough_harmonics(results::FrequencyStep& s, const model::Stabi
     out.axes = std::make_unique<analysis::RotatingAxes>(s.linear, speeds.back(), harmonics);
     out.bands = solve_bands(law, *out.axes, speeds, line);
     if (out.axes->constant()) return out;
-    out.cut = find_truncation(s, law, out.bands, *out.axes);
+    out.cut = find_truncation(s, law, out.bands, sense_of(speeds), *out.axes);
     const double nothing =
         analysis::unnoticed_share(*out.axes) * std::abs(out.axes->speed(out.bands.speeds.back()));
     double growth = 0.0;
@@ -117,6 +121,17 @@ std::string text_of(const BandResult& r) {
                         std::isnan(b.high) ? fmt::format("above {:.6g}", to_rpm(r.speeds.back()))
                                            : fmt::format("{:.8g}", to_rpm(b.high)));
   return text;
+}
+
+/// All speeds as they are.
+void turn_back(BandResult& r, double sense) {
+  for (double& x : r.speeds)
+    x *= sense;
+  for (InstabilityBand& b : r.bands) {
+    b.low *= sense;
+    b.high *= sense;
+    b.speed *= sense;
+  }
 }
 
 /// What is known of the motions at the speeds looked at.
@@ -238,9 +253,16 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
+  if (speeds.front() < 0.0 && speeds.back() > 0.0)
+    throw run_error("E88",
+                    fmt::format("step '{}': speeds of both senses of rotation, and bands of "
+                                "instability of an asymmetric or cracked shaft in each",
+                                step.name),
+                    "write two steps, one of negative speeds", step.name);
   const bool cracked = results::breathes(job.model);
   run::ProgressLine progress(step.name, job.options.quiet);
-  const Solved solved = solve_with_enough_harmonics(s, law, speeds, progress);
+  Solved solved = solve_with_enough_harmonics(s, law, speeds, progress);
+  turn_back(solved.bands, sense_of(speeds));
   const analysis::RotatingAxes& axes = *solved.axes;
   const BandResult& r = solved.bands;
   if (!cracked) s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";

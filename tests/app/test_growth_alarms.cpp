@@ -323,3 +323,28 @@ TEST(GrowthAlarms, LoadsInTimeEnterAsTheyBegin) {
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("load 'pulse' at its value at t = 0")) << d.log;
 }
+
+// A rotor that runs backwards under a cross-coupling is the mirror image of one under its negative.
+TEST(GrowthAlarms, BandsOfARotorThatRunsBackwardsAreItsOwn) {
+  const auto growth = [](const char* k, const char* speeds) {
+    std::string deck =
+        two_pole(fmt::format("[[bearing]]\nname = \"stage\"\nat = \"imp\"\n"
+                             "type = \"cross_coupling\"\nk = \"{} N/m\"\n"
+                             "[[step]]\nname = \"stab\"\ntype = \"stability\"\n"
+                             "speed = {{ values = {} }}\nmodes = 4\n",
+                             k, speeds));
+    deck.insert(deck.find("rayleigh_alpha"), "internal_beta = \"2e-5 s\"\n");
+    const DeckRun d(deck);
+    EXPECT_EQ(d.exit, 0) << d.log;
+    std::map<double, double> out;
+    for (const auto& row : d.csv("stab_growth.csv").rows)
+      out[std::round(std::abs(row[0]))] = row[1];
+    return out;
+  };
+  const auto backwards = growth("6e4", R"(["-4000 rpm", "-1500 rpm"])");
+  const auto mirrored = growth("-6e4", R"(["1500 rpm", "4000 rpm"])");
+  for (const double rpm : {1500.0, 4000.0})
+    EXPECT_NEAR(backwards.at(rpm), mirrored.at(rpm), 1e-6 * std::abs(mirrored.at(rpm))) << rpm;
+  EXPECT_GT(std::abs(growth("6e4", R"(["1500 rpm", "4000 rpm"])").at(4000.0) - mirrored.at(4000.0)),
+            0.1);
+}

@@ -409,12 +409,13 @@ class BandSearch {
   BandSearch(RotatingAxes& axes, const BandOptions& o)
       : axes_(axes),
         solver_(axes.pattern(), axes.active(), options(axes, o)),
-        tolerance_(o.tolerance) {}
+        tolerance_(o.tolerance),
+        sense_(o.sense) {}
 
   /// The motion that grows fastest, of all.
   Growth at(double Omega) {
     ++evaluations;
-    const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
+    const la::MCK& m = axes_.at(sense_ * Omega, Complex(0, infinity));
     Growth best{-infinity, 0, {}};
     const std::vector<la::Mode>& modes = solver_.solve(m);
     note_count(solver_.certificate());
@@ -430,7 +431,8 @@ class BandSearch {
   Growth follow(double Omega, const Growth& near) {
     if (!near.mode) return at(Omega);
     ++evaluations;
-    std::optional<la::Mode> x = solver_.follow(axes_.at(Omega, Complex(0, infinity)), *near.mode);
+    std::optional<la::Mode> x =
+        solver_.follow(axes_.at(sense_ * Omega, Complex(0, infinity)), *near.mode);
     if (!x || !is_motion(*x)) return at(Omega);
     // copies lie a speed or two apart
     if (std::abs(x->lambda - near.mode->lambda) > 0.25 * std::abs(axes_.speed(Omega)))
@@ -493,7 +495,7 @@ class BandSearch {
   void settle(double Omega, la::Mode& x) {
     for (int round = 0; round < 40 && axes_.hysteretic() && x.lambda.imag() != 0.0; ++round) {
       const Complex rate = x.lambda;
-      const auto next = solver_.follow(axes_.at(Omega, rate), x);
+      const auto next = solver_.follow(axes_.at(sense_ * Omega, rate), x);
       if (!next) break;
       x = *next;
       if (std::abs(x.lambda - rate) <= 1e-12 * std::abs(rate)) break;
@@ -562,7 +564,7 @@ class BandSearch {
   }
   RotatingAxes& axes_;
   la::ModeSolver solver_;
-  double tolerance_;
+  double tolerance_, sense_;
 };
 
 /// Between its ends the rotation takes stiffnesses: as many more or fewer are negative.
@@ -575,9 +577,9 @@ struct Seed {
 };
 
 /// Halves a seed: the parts in which something changes take its place.
-std::size_t halve(RotatingAxes& axes, std::vector<Seed>& seeds, std::size_t k) {
+std::size_t halve(RotatingAxes& axes, double sense, std::vector<Seed>& seeds, std::size_t k) {
   const Seed s = seeds[k];
-  const Index n = axes.negative_stiffnesses(s.middle());
+  const Index n = axes.negative_stiffnesses(sense * s.middle());
   std::vector<Seed> parts;
   if (n != s.at_low) parts.push_back({s.low, s.middle(), s.at_low, n});
   if (n != s.at_high) parts.push_back({s.middle(), s.high, n, s.at_high});
@@ -588,17 +590,18 @@ std::size_t halve(RotatingAxes& axes, std::vector<Seed>& seeds, std::size_t k) {
 
 /// Zeros of the symmetric stiffness between neighbouring speeds, each to a thousandth of what is
 /// between them: damping may leave a band no wider than a hundredth of that.
-std::vector<double> zeros_of_stiffness(RotatingAxes& axes, const std::vector<double>& speeds) {
+std::vector<double> zeros_of_stiffness(RotatingAxes& axes, double sense,
+                                       const std::vector<double>& speeds) {
   std::vector<Seed> seeds;
   for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
     if (!(speeds[k] > 0.0)) continue;
-    const Seed s{speeds[k], speeds[k + 1], axes.negative_stiffnesses(speeds[k]),
-                 axes.negative_stiffnesses(speeds[k + 1])};
+    const Seed s{speeds[k], speeds[k + 1], axes.negative_stiffnesses(sense * speeds[k]),
+                 axes.negative_stiffnesses(sense * speeds[k + 1])};
     if (s.at_low != s.at_high) seeds.push_back(s);
   }
   for (std::size_t k = 0; k < seeds.size();)
     if (std::abs(seeds[k].at_high - seeds[k].at_low) > 1 && !seeds[k].narrow())
-      halve(axes, seeds, k);
+      halve(axes, sense, seeds, k);
     else
       ++k;
   for (std::size_t k = 0; k + 1 < seeds.size();) {
@@ -607,7 +610,7 @@ std::vector<double> zeros_of_stiffness(RotatingAxes& axes, const std::vector<dou
     const std::size_t wider = a.width() > b.width() ? k : k + 1;
     if (apart || seeds[wider].narrow())
       ++k;
-    else if (halve(axes, seeds, wider) != 1 || wider == k)
+    else if (halve(axes, sense, seeds, wider) != 1 || wider == k)
       k = k > 0 ? k - 1 : 0;
   }
   std::vector<double> zeros;
@@ -620,7 +623,7 @@ std::vector<double> zeros_of_stiffness(RotatingAxes& axes, const std::vector<dou
 /// The speeds asked for, and one within each stretch between seeds.
 std::vector<double> list_speeds(RotatingAxes& axes, const BandOptions& o) {
   std::vector<double> speeds = o.speeds;
-  const std::vector<double> edges = zeros_of_stiffness(axes, o.speeds);
+  const std::vector<double> edges = zeros_of_stiffness(axes, o.sense, o.speeds);
   for (std::size_t k = 0; k + 1 < edges.size(); ++k)
     if (edges[k + 1] - edges[k] > 1e-6 * edges[k])
       speeds.push_back(0.5 * (edges[k] + edges[k + 1]));
@@ -697,7 +700,8 @@ double unnoticed_share(const RotatingAxes& axes) {
 double largest_growth(RotatingAxes& axes, double Omega, Index modes) {
   BandOptions o;
   o.modes = modes;
-  return BandSearch(axes, o).at(Omega).rate;
+  o.sense = Omega < 0.0 ? -1.0 : 1.0;
+  return BandSearch(axes, o).at(std::abs(Omega)).rate;
 }
 
 BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {

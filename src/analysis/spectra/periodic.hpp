@@ -92,8 +92,9 @@ struct InstabilityBand {
 
 struct BandOptions {
   std::vector<double>
-      speeds;       ///< rad/s, ascending; more are put in where rotation takes the last stiffness
-  Index modes = 8;  ///< of least frequency in rotating axes
+      speeds;        ///< rad/s, ascending; more are put in where rotation takes the last stiffness
+  double sense = 1;  ///< -1: the rotor runs backwards, at the negative of all speeds
+  Index modes = 8;   ///< of least frequency in rotating axes
   double tolerance = 1e-11;  ///< relative, of the edges
   /// Told before each speed: the share of the speeds that is done, and the speed, rad/s.
   std::function<void(double, double)> progress;
@@ -113,7 +114,7 @@ struct BandResult {
 /// Growth, as a share of the speed, that is taken for none: what harmonics left out of Hill's equations
 /// make of nothing, or rounding where the matrices are constant.
 double unnoticed_share(const RotatingAxes& axes);
-/// Largest real part, 1/s, of the motions at a speed, rad/s; modes: of least frequency in rotating
+/// Largest real part, 1/s, of the motions at a speed, rad/s, with its sign; modes: of least frequency in rotating
 /// axes.
 double largest_growth(RotatingAxes& axes, double Omega, Index modes);
 
