@@ -59,17 +59,9 @@ Vec2 place_where_used(const Film& film, elements::LateralMotion m, double wanted
 bool is_lobed(const elements::ShortJournal&) { return false; }
 bool is_lobed(const elements::FiniteJournal& film) { return film.surface->lift() > 0.0; }
 
-/// Of films: clearance, and the load they carry near it at the present spin in the direction of the
-/// displacement.
-template <class Film>
-void add_film_condition(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-                        const elements::FilmLaw<Film>& law, double clearance) {
-  const Film& film = law.film;
-  const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius *
-                            (film.radius / clearance) * (film.radius / clearance);
-  follow_closely(a, n, clearance);
-  const Pair nodes{n.shaft.node, n.other.node};
-  const auto motion = [r = displacement_of(n), nodes](const NodeAt& at) {
+/// The journal in its film, as if it stood still.
+auto journal_at(const meshes::BearingNodes& n) {
+  return [r = displacement_of(n), nodes = Pair{n.shaft.node, n.other.node}](const NodeAt& at) {
     elements::LateralMotion m;
     m.r = r(at);
     m.v.setZero();
@@ -79,6 +71,18 @@ void add_film_condition(Assembly& a, const model::Bearing& b, const meshes::Bear
     m.kept = at(nodes[0]).kept;
     return m;
   };
+}
+
+/// Of films: clearance, and the load they carry near it at the present spin in the direction of the
+/// displacement.
+template <class Film>
+void add_film_condition(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                        const elements::FilmLaw<Film>& law, double clearance) {
+  const Film& film = law.film;
+  const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius *
+                            (film.radius / clearance) * (film.radius / clearance);
+  follow_closely(a, n, clearance);
+  const auto motion = journal_at(n);
   a.built.conditions.push_back({number_of(a, b), b.name, b.where,
                                 [motion, law, clearance](const NodeAt& at) {
                                   elements::LateralMotion m = motion(at);
@@ -196,16 +200,8 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
   guarded(a, b, [&] {
     const auto film =
         std::make_shared<elements::FiniteJournal>(make_finite_journal(law, law.nodes));
-    const HeatPadsAt pads = [film, r = displacement_of(n),
-                             nodes = Pair{n.shaft.node, n.other.node}](const NodeAt& at) {
-      elements::LateralMotion m;
-      m.r = r(at);
-      m.v.setZero();
-      m.a.setZero();
-      m.spin = at(nodes[0]).spin();
-      m.housing_spin = at(nodes[1]).spin();
-      m.kept = at(nodes[0]).kept;
-      const elements::FilmPoint p = elements::FilmLaw<elements::FiniteJournal>::point(m);
+    const HeatPadsAt pads = [film, journal = journal_at(n)](const NodeAt& at) {
+      const elements::FilmPoint p = elements::FilmLaw<elements::FiniteJournal>::point(journal(at));
       std::vector<elements::HeatPad> out;
       for (std::size_t k = 0; k < film->surface->arcs().size(); ++k)
         out.push_back({film.get(), k, p});
