@@ -335,7 +335,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "directions = [\"x\", \"y\", \"z\"]    # rx left free"},
       {"E79", "no load that could buckle anything",
        "Gravity and the loads of the deck do not change the stiffness of the model to first order, "
-       "so no factor on them makes it singular.",
+       "so no factor on them makes it singular. Heat, preloads and places that are forced are not "
+       "scaled: what they change is in the stiffness already, and a modal or static step tells how "
+       "much of it is left.",
        ""},
       {"E80", "a critical-speed map without bearings",
        "The step varies the stiffness of bearings; those it names must exist, and by default "

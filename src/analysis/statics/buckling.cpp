@@ -135,8 +135,9 @@ Index negative_at(const la::MCK& K0, const la::BlockMatrix<6>& B, double mu, la:
 }
 
 Error nothing_buckles() {
-  return run_error("E79", "no load changes the stiffness of the model: nothing can buckle",
-                   "give a load along a shaft, or a moment");
+  return run_error("E79", "no load that is scaled changes the stiffness of the model",
+                   "give a load along a shaft, or a moment; heat, preloads and places that are "
+                   "forced are not scaled: they are in the stiffness already");
 }
 
 Definiteness judge(const la::BlockMatrix<6>& K0, const EquilibriumSolver& solver,
@@ -237,7 +238,7 @@ Buckling buckling(SteadySystem& running, double Omega, Index count,
   };
   if (!(change * std::min(share, 1.0) > 1e-15 * stiffness)) {
     if (unloaded.stable()) throw nothing_buckles();
-    out.count.why_not = "no load changes the stiffness of the model";
+    out.count.why_not = "no load that is scaled changes the stiffness of the model";
     note_unloaded();
     return out;
   }
