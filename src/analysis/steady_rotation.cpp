@@ -477,6 +477,15 @@ bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX&
   return inside;
 }
 
+bool SteadySystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                               VecX& r) {
+  r.resize(q.size());
+  workspace_.context.averaged = workspace_.context.whole_turn = false;
+  const bool inside = evaluate_residual(f, Omega, q, theta, r, all_);
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
+  return inside;
+}
+
 bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const {
   return polynomial_ && std::abs(Omega) <= 2.0 * polynomial_->scale && q == polynomial_->q &&
          f.chart == polynomial_->charts;

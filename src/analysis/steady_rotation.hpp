@@ -124,6 +124,8 @@ class SteadySystem {
   /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n,
   /// k = 0 .. n-1.
   bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
+  /// The residual at an angle of the reference, rad; else as residual().
+  bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
 
  private:
   using Terms = std::vector<std::size_t>;

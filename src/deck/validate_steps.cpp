@@ -15,13 +15,13 @@ namespace whirl::deck {
 
 namespace {
 
-/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices
-/// with it.
+/// Stiffnesses that differ by more than rounding of the data turn matrices with them.
+constexpr double unequal = 0.02;
+
 bool turns_with_stiffness(const model::Shaft& s) {
-  constexpr double share = 0.02;
   if (!s.rotating || s.speed_ratio == 0) return false;
   return std::any_of(s.sections.begin(), s.sections.end(),
-                     [](const model::Section& x) { return model::is_unequal(x, share); });
+                     [](const model::Section& x) { return model::is_unequal(x, unequal); });
 }
 
 /// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times
@@ -68,6 +68,11 @@ void check_linear(const model::Model& m, Problems& out) {
       if (turns_with_stiffness(shaft))
         say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name),
             "leave linear out of the step");
+    for (const auto& b : m.bearings)
+      if (const auto* coupling = std::get_if<model::Coupling>(&b.law))
+        if (model::is_unequal(*coupling, unequal) && m.shafts[b.at.shaft].rotating)
+          say(fmt::format("the stiffness of coupling '{}' turns with its shafts", b.name),
+              "leave linear out of the step");
     if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
       say("the base turns at a rate that changes, and the matrices with it",
           "a constant rate, or leave linear out");

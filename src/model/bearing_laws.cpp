@@ -428,6 +428,19 @@ SupportTraits traits(const CrossCoupling&) {
           .picture = Picture::bearing};
 }
 
+bool is_unequal(const Coupling& c, double share) {
+  constexpr double angle = 1.0;  // rad: a matrix that this leaves as it is, every angle does
+  Matrix<6> turn = Matrix<6>::Identity();
+  const Eigen::Matrix2d across = Eigen::Rotation2Dd(angle).toRotationMatrix();
+  turn.block<2, 2>(1, 1) = turn.block<2, 2>(4, 4) = across;
+  const auto changes = [&](const Matrix<6>& A, Index from) {
+    const Matrix<6> change = turn * A * turn.transpose() - A;
+    const double size = A.block<2, 2>(from, from).cwiseAbs().maxCoeff();
+    return change.block<2, 2>(from, from).cwiseAbs().maxCoeff() > share * size + 1e-12 * size;
+  };
+  return changes(c.K, 1) || changes(c.K, 4) || changes(c.C, 1) || changes(c.C, 4);
+}
+
 SupportTraits traits(const Coupling& b) {
   return {.held = on_diagonal(b.K),
           .loads = NodeLoads{.lateral = true, .tilting = true, .torque = true},

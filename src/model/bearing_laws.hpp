@@ -289,6 +289,9 @@ struct Coupling {
   double angle_y = 0, angle_z = 0;    ///< angular misalignment: slopes towards y and z, rad
 };
 SupportTraits traits(const Coupling&);
+/// Stiffness or damping across the shaft differs between directions by more than this share of the
+/// largest: the forces change as the coupling turns.
+bool is_unequal(const Coupling& c, double share);
 
 /// Spur or helical gear pair between the shaft and a second one.
 struct GearPair {

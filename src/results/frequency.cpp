@@ -382,7 +382,7 @@ void FrequencyStep::finish(const std::string& line) {
 
 void FrequencyStep::warn_of_mean_stiffness() {
   const bool stiffness = turns_with_stiffness(job.model);
-  const bool in_bands = type_ == "stability" && stiffness;
+  const bool in_bands = type_ == "stability" && is_judged_in_turning_axes(job.model);
   const bool not_lateral = type_ == "torsional" || type_ == "buckling";
   const bool in_its_axes = type_ == "unbalance_response" && turns_as_one();
   if (in_bands || in_its_axes || not_lateral || stands(step.law)) return;
@@ -399,8 +399,11 @@ void FrequencyStep::warn_of_mean_stiffness() {
   Diagnostic d;
   d.code = "W14";
   d.message = fmt::format("step '{}': {}", step.name, what);
-  d.hint = stiffness ? "a stability step finds the band; an unbalance response turns with the shaft"
-                     : "an unbalance response and a transient turn with the rotor";
+  // a shaft geared to others turns at no one speed: what does turn with all of them is a transient
+  d.hint = !turns_as_one() ? "a transient turns with the shafts"
+           : stiffness
+               ? "a stability step finds the band; an unbalance response turns with the shaft"
+               : "an unbalance response and a transient turn with the rotor";
   section.text += " " + capital(what) + ".";
   warn(job, std::move(d));
 }
@@ -446,12 +449,34 @@ bool breathes(const model::Model& m) {
 
 bool turns_with_stiffness(const model::Model& m) {
   if (breathes(m)) return true;
+  for (const model::Bearing& b : m.bearings)
+    if (const auto* coupling = std::get_if<model::Coupling>(&b.law))
+      if (model::is_unequal(*coupling, 0) && m.shafts[b.at.shaft].rotating &&
+          m.shafts[b.at.shaft].speed_ratio != 0)
+        return true;
   for (const model::Shaft& s : m.shafts)
     for (const model::Section& x : s.sections)
       if (s.rotating && s.speed_ratio != 0 &&
           (model::is_unequal(x, 0) || (x.general && x.general->kappa_y != x.general->kappa_z)))
         return true;
   return false;
+}
+
+bool is_judged_in_turning_axes(const model::Model& m) {
+  if (turns_with_stiffness(m)) return true;
+  if (!turns_with_inertia(m)) return false;
+  double speed = 0;
+  for (const model::Shaft& s : m.shafts) {
+    const double own = s.rotating ? s.speed_ratio : 0.0;
+    if (own == 0) continue;
+    if (speed != 0 && own != speed) return false;
+    speed = own;
+  }
+  return true;
+}
+
+const char* what_turns(const model::Model& m) {
+  return turns_with_stiffness(m) ? "stiffness" : "inertia";
 }
 
 }  // namespace whirl::results

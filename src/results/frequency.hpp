@@ -109,10 +109,15 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
 
 /// A shaft that turns is cracked.
 bool breathes(const model::Model& m);
-/// A rotating shaft has unequal principal stiffnesses, or a crack: matrices in fixed axes are means
-/// over the revolution, and stability is another matter.
+/// A rotating shaft or a coupling of such has unequal principal stiffnesses, or there is a crack:
+/// matrices in fixed axes are means over the revolution, and stability is another matter.
 bool turns_with_stiffness(const model::Model& m);
 /// A disk that spins has unequal transverse moments of inertia: the same of its mass matrix.
 bool turns_with_inertia(const model::Model& m);
+/// Stability of such a rotor is judged in axes that turn with it: always where its stiffness is
+/// unequal, and where its inertia is and all shafts turn at one speed.
+bool is_judged_in_turning_axes(const model::Model& m);
+/// "stiffness" or "inertia".
+const char* what_turns(const model::Model& m);
 
 }  // namespace whirl::results

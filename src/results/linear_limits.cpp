@@ -146,9 +146,10 @@ void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
   Diagnostic d;
   d.code = "W13";
   d.message = fmt::format(
-      "step '{}': the rotor, whose stiffness turns with it, is unstable from {} to {} rpm "
+      "step '{}': the rotor, whose {} turns with it, is unstable from {} to {} rpm "
       "({}): the steady response is never reached there",
-      s.step.name, edge(band->low, "below", *least), edge(band->high, "above", *most),
+      s.step.name, what_turns(s.job.model), edge(band->low, "below", *least),
+      edge(band->high, "above", *most),
       band->frequency > 1e-6 * band->speed
           ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
                         to_rpm(sense * band->speed))
@@ -167,6 +168,18 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
       "step '{}': the crack enters as the mean of its compliance over a revolution", step);
   d.hint = "an unbalance response and a transient turn with the shaft";
   warn(job, std::move(d));
+}
+
+std::string moments_along_shafts(const model::Model& m) {
+  std::string names;
+  for (const model::PointLoad& l : m.loads)
+    if (m.shafts[l.at.shaft].rotating && l.moment.x() != 0.0)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", l.name);
+  if (names.empty()) return {};
+  return fmt::format(
+      "load {} twists a shaft by a moment that has no potential as the shaft tilts and can itself "
+      "drive whirl; a torque on the turning is a [[drive]]",
+      names);
 }
 
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
@@ -194,6 +207,8 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
           "reached there",
           s.step.name, to_rpm(Omega), growth);
       d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
+      const std::string moments = moments_along_shafts(s.job.model);
+      if (!moments.empty()) d.hint += "; " + moments;
       warn(s.job, std::move(d));
     } catch (const Error& e) {
       warn_of_unknown_growth(s, Omega, e);

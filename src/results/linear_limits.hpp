@@ -92,6 +92,9 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
                     analysis::Motion motion = analysis::Motion::all);
 
+/// Where motions grow: loads with a moment along a shaft, which can be the cause. "" without one.
+std::string moments_along_shafts(const model::Model& m);
+
 /// Rounding of the speeds at the ends of a table, rad/s.
 double table_slack(const model::TableBearing& table);
 

@@ -249,7 +249,8 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                            const model::StabilityStep& law) {
   const std::vector<double> speeds = results::speeds_of(law.speed);
   results::FrequencyStep s(job, step, "stability",
-                           "instability bands of the shaft, whose stiffness turns with it",
+                           fmt::format("instability bands of the rotor, whose {} turns with it",
+                                       results::what_turns(job.model)),
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
@@ -276,7 +277,7 @@ void run_instability_bands(run::Job& job, const model::Step& step,
           : fmt::format("{}: Hill's equations with {} harmonics.",
                         cracked ? "The crack opens and closes with the weight and with what bends "
                                   "the shaft in the mean, not with its vibration"
-                                : "Neither the shaft nor its supports are isotropic",
+                                : "Neither the rotor nor its supports are isotropic",
                         axes.harmonics());
   std::string known = counts_of(r);
   std::string in_short = known;

@@ -139,6 +139,11 @@ class ModalRun {
   std::string text() const;
   std::string doubt() const;
   std::string line() const;
+  /// What turns unevenly enters as its mean: motions that grow by its turning are no modes of that.
+  bool is_mean() const {
+    const model::Model& m = s_.job.model;
+    return law_.speed != 0 && (results::turns_with_stiffness(m) || results::turns_with_inertia(m));
+  }
 
   const model::ModalStep& law_;
   const analysis::ModesOptions options_;
@@ -263,13 +268,17 @@ std::string ModalRun::text() const {
                         diverging_ == 1 ? " diverges" : "s diverge");
   text += " " + results::capital(certificate_.text()) + ".";
   if (law_.damped && unstable_ + diverging_ == 0)
-    text += " " + results::capital(results::stability_text(certificate_)) + ".";
+    text +=
+        " " + results::capital(results::stability_text(certificate_)) +
+        (is_mean() ? ", of the mean over a revolution; growth in bands of speed is not excluded."
+                   : ".");
   return text;
 }
 
 /// What grows beyond the list may not be known where nothing in it does.
 std::string ModalRun::doubt() const {
   const bool asked = law_.damped && unstable_ + diverging_ == 0;
+  if (asked && is_mean()) return ", growth in bands of speed not excluded";
   if (!asked || !certificate_.complete() || certificate_.stability_certain()) return {};
   return fmt::format(", growth above {:.5g} Hz not excluded", to_hz(certificate_.list.radius));
 }
@@ -313,6 +322,8 @@ void ModalRun::execute() {
   for (std::size_t k = 0; k < std::min(modes_.size(), static_cast<std::size_t>(law_.shapes)); ++k)
     add_shape(k);
   s_.section.text = text();
+  const std::string moments = results::moments_along_shafts(s_.job.model);
+  if (unstable_ > 0 && !moments.empty()) s_.assume(moments);
   s_.finish(line());
 }
 

@@ -245,7 +245,7 @@ class Obstacles {
 
   /// E89, and what is wrong with the deck at another value of the parameter.
   void check_map(const model::Step& step, const model::StabilityMap& map) {
-    if (results::turns_with_stiffness(model_)) throw no_map_of_bands(step);
+    if (results::is_judged_in_turning_axes(model_)) throw no_map_of_bands(step);
     if (!options_.variant) return;
     for (const std::string& value : map.values) {
       const model::Model m = variant_of(options_, step, map, value);

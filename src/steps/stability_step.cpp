@@ -70,6 +70,17 @@ std::string onset_text(const analysis::Onset& x) {
   return fmt::format("instability above {:.8g} rpm, {}", to_rpm(x.speed), what);
 }
 
+/// Nothing grows at the next speed judged, and nothing begins to grow before it.
+bool is_stable_after(const analysis::StabilityResult& r, const analysis::Onset& x) {
+  const auto next = std::find_if(r.verdicts.begin(), r.verdicts.end(),
+                                 [&](const auto& v) { return v.speed > x.speed; });
+  if (next == r.verdicts.end()) return false;
+  const bool begins = std::any_of(r.onsets.begin(), r.onsets.end(), [&](const auto& o) {
+    return o.gains && o.speed > x.speed && o.speed < next->speed;
+  });
+  return next->stable() && !begins;
+}
+
 /// "stable from .. to .. rpm", "instability above ..". Stable is what is certified only.
 std::string finding(const analysis::StabilityResult& r) {
   const analysis::SpeedVerdict &first = r.verdicts.front(), &last = r.verdicts.back();
@@ -80,8 +91,18 @@ std::string finding(const analysis::StabilityResult& r) {
   if (!r.stable_at_start)
     line =
         fmt::format("unstable at {:.6g} rpm already ({})", to_rpm(first.speed), growth_text(first));
-  for (const analysis::Onset& x : r.onsets)
-    if (x.gains) return line + (line.empty() ? "" : "; ") + onset_text(x);
+  bool grows = !r.stable_at_start, told = false;
+  for (const analysis::Onset& x : r.onsets) {
+    if (x.gains && told && !grows)
+      return line + fmt::format(", unstable again above {:.8g} rpm", to_rpm(x.speed));
+    if (x.gains && !told) {
+      line += (line.empty() ? "" : "; ") + onset_text(x);
+      told = grows = true;
+    } else if (grows && is_stable_after(r, x)) {
+      line += fmt::format(", stable again above {:.8g} rpm", to_rpm(x.speed));
+      grows = false;
+    }
+  }
   if (!line.empty()) return line;
   return fmt::format("{} from {:.6g} to {:.6g} rpm", r.certain() ? "stable" : "no growth found",
                      to_rpm(first.speed), to_rpm(last.speed));
@@ -225,7 +246,7 @@ void add_figures(results::FrequencyStep& s, const analysis::StabilityResult& r,
 }  // namespace
 
 void run_stability_step(run::Job& job, const model::Step& step, const model::StabilityStep& law) {
-  if (results::turns_with_stiffness(job.model)) return run_instability_bands(job, step, law);
+  if (results::is_judged_in_turning_axes(job.model)) return run_instability_bands(job, step, law);
   analysis::StabilityOptions o;
   o.speeds = results::speeds_of(law.speed);
   const std::vector<double>& speeds = o.speeds;
@@ -240,7 +261,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   io::Value& v = s.summary();
   const bool unknown = r.stable_at_start && !r.verdicts.front().certificate.stability_certain();
   v["stable at the first speed"] = unknown ? io::Value() : io::Value(r.stable_at_start);
-  v["certified"] = r.certain();
+  v["certified"] = r.certain() && !results::turns_with_inertia(job.model);
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
   s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
@@ -252,8 +273,14 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   add_rates(s, r, lines);
   add_figures(s, r, lines);
   std::string line = verdict_line(r);
+  if (results::turns_with_inertia(job.model))
+    line += "; of the mean inertia over a revolution: growth in bands of speed is not excluded";
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + "." + neutral_text(r);
+  const std::string moments = results::moments_along_shafts(job.model);
+  const bool grows =
+      std::any_of(r.verdicts.begin(), r.verdicts.end(), [](const auto& x) { return !x.stable(); });
+  if (grows && !moments.empty()) s.assume(moments);
   s.finish(line);
 }
 

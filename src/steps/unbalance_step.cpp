@@ -1,6 +1,7 @@
 // An unbalance-response step: Bode and polar plots of the probes, forces of the supports, operating
 // shapes, separation margins.
 #include <analysis/response/api684.hpp>
+#include <meshes/mass_properties.hpp>
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
@@ -120,7 +121,12 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
   return t;
 }
 
-/// Multiples of the speed in the motion of a rotor that breathes.
+/// Largest amplitude of all probes, and the speed there.
+struct Largest {
+  double amplitude = 0, speed = 0;  ///< m 0-peak, rad/s
+};
+
+/// Multiples of the speed in the motion of a rotor that turns unevenly or breathes.
 io::Table multiples_table(const UnbalanceResponse& r,
                           const std::vector<analysis::ResponseProbe>& probes, int multiples) {
   io::Table t;
@@ -177,17 +183,38 @@ plot::Figure multiples_figure(const results::FrequencyStep& s, const UnbalanceRe
   return f;
 }
 
-/// Of a rotor that breathes.
-void add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
-                   const std::vector<analysis::ResponseProbe>& probes, int multiples) {
-  if (multiples == 0) return;
+/// Largest amplitude of all probes at a multiple of the speed, and the speed there.
+Largest largest_of_multiple(const UnbalanceResponse& r, std::size_t h) {
+  Largest out;
+  for (const SteadyPoint& x : r.points) {
+    if (h >= x.multiple.size()) continue;
+    for (const analysis::PointAmplitude& a : x.multiple[h])
+      if (a.orbit().major > out.amplitude) out = {a.orbit().major, x.Omega};
+  }
+  return out;
+}
+
+/// ", at twice the speed 6.9 mm at 410 rpm": where it is no rounding.
+std::string add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
+                          const std::vector<analysis::ResponseProbe>& probes, int multiples,
+                          bool breathes) {
+  if (multiples == 0) return {};
+  constexpr double seen = 1e-3, rounding = 1e-9;
+  const double once = largest_of_multiple(r, 1).amplitude;
+  const Largest twice = largest_of_multiple(r, 2);
+  if (!breathes && twice.amplitude <= rounding * once) return {};
+  s.summary()["largest at twice the speed 0-peak [m]"] = twice.amplitude;
   s.add_table("multiples", multiples_table(r, probes, multiples), false);
   for (std::size_t p = 0; p < probes.size(); ++p)
     s.add_figure(multiples_figure(s, r, probes[p], p, multiples));
   double left_out = 0;
   for (const SteadyPoint& x : r.points)
     left_out = std::max(left_out, x.left_out);
-  s.summary()["left out of the Fourier series, share"] = left_out;
+  if (breathes) s.summary()["left out of the Fourier series, share"] = left_out;
+  if (twice.amplitude <= seen * once) return {};
+  const plot::DisplayUnit unit = plot::length_unit(twice.amplitude);
+  return fmt::format(", at twice the speed {} {} at {:.6g} rpm",
+                     readable(unit.factor * twice.amplitude), unit.name, to_rpm(twice.speed));
 }
 
 /// The same into the summary.
@@ -271,11 +298,6 @@ class BothMeshes {
   analysis::UnbalanceSolver own_, fine_;
 };
 
-/// Largest amplitude of all probes, and the speed there.
-struct Largest {
-  double amplitude = 0, speed = 0;  ///< m 0-peak, rad/s
-};
-
 /// The same of each probe into the summary.
 Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::ResponseProbe>& probes,
                      const std::vector<analysis::ResponsePeak>& peaks, io::Value& summary) {
@@ -301,6 +323,20 @@ Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::Res
     summary["largest amplitude 0-peak [m]"][probes[p].name] = most;
   }
   return largest;
+}
+
+/// Where all unbalances cancel, what is left of the response is rounding: so small a part of what one
+/// of them alone would move the rotor by.
+bool is_rounding(const Largest& largest, const model::Model& m) {
+  constexpr double rounding = 1e-12;
+  double unbalance = 0, mass = 0;
+  for (std::size_t k = 0; k < m.shafts.size(); ++k)
+    mass += meshes::shaft_mass(m, k).mass;
+  for (const model::Unbalance& u : m.unbalances)
+    unbalance += std::abs(u.amount * (u.factor ? u.factor->at(0.0).f : 1.0));
+  for (const model::Disk& d : m.disks)
+    unbalance += d.mass * d.offset.tail<2>().norm();
+  return largest.amplitude > 0 && largest.amplitude * mass < rounding * unbalance;
 }
 
 /// What the elements leave of the peaks, or of the largest amplitude where there is none; not judged
@@ -433,10 +469,17 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
   options.shapes = true;
   analysis::UnbalanceSolver solver(s.linear, options);
   results::GapCheck gaps(s);
-  if (largest.amplitude > 0) gaps.look(largest.speed, solver.at(largest.speed).shape);
+  const auto look = [&](const SteadyPoint& x) {
+    std::vector<VecXc> all = x.shape;
+    all.insert(all.end(), x.shape_of_multiples.begin(), x.shape_of_multiples.end());
+    gaps.look(x.Omega, all);
+  };
+  if (largest.amplitude > 0) look(solver.at(largest.speed));
+  const double twice = largest_of_multiple(r, 2).speed;
+  if (twice != 0.0) look(solver.at(twice));
   for (const double Omega : speeds) {
     const SteadyPoint x = solver.at(Omega);
-    gaps.look(Omega, x.shape);
+    look(x);
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
       const std::string name = fmt::format("shape_{:.0f}rpm{}", to_rpm(Omega), order_suffix(r, k));
       const double most = largest_radius(s.linear, x.shape[k]);
@@ -452,7 +495,7 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
     }
   }
   for (const double Omega : also)
-    gaps.look(Omega, solver.at(Omega).shape);
+    look(solver.at(Omega));
   gaps.report("response to unbalance");
 }
 
@@ -473,6 +516,20 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
     std::sort(o.speeds.begin(), o.speeds.end());
   }
   return o;
+}
+
+/// The response, with the peaks found within the operating speeds.
+UnbalanceResponse with_peaks(const UnbalanceResponse& r,
+                             const std::vector<analysis::ResponsePeak>& peaks,
+                             analysis::UnbalanceSolver& solver, const model::UnbalanceStep& law) {
+  UnbalanceResponse out = r;
+  if (!law.zones) return out;
+  for (const analysis::ResponsePeak& p : peaks)
+    if (p.bounded && std::abs(p.speed) > law.operating[0] && std::abs(p.speed) < law.operating[1])
+      out.points.push_back(solver.at(p.speed));
+  std::sort(out.points.begin(), out.points.end(),
+            [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
+  return out;
 }
 
 /// The operating speeds and their middle, both ends and the middle of the range, and the highest
@@ -503,7 +560,7 @@ void warn_of_unbounded(results::FrequencyStep& s, const std::vector<analysis::Re
   d.code = "W13";
   d.message =
       fmt::format("step '{}': the response has no bound at {} rpm: {}", s.step.name, list,
-                  o.multiples > 0      ? "there is no periodic motion beside it"
+                  o.breathes           ? "there is no periodic motion beside it"
                   : o.turns_with_rotor ? "nothing damps it there, or the rotor begins to bend out"
                                        : "nothing damps it there");
   d.hint = "give bearings or shafts damping; amplitudes beside these speeds grow without end";
@@ -542,12 +599,17 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
   o.turns_with_rotor = s.turns_as_one() && (results::turns_with_stiffness(job.model) ||
                                             results::turns_with_inertia(job.model));
-  if (s.turns_as_one() && results::breathes(job.model)) o.multiples = 3;
+  o.breathes = s.turns_as_one() && results::breathes(job.model);
+  if (o.breathes || o.turns_with_rotor) o.multiples = 3;
   if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
     const auto orders = s.linear.running().orders();
     for (const double order : std::vector<double>(orders.begin(), orders.end()))
       refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true}, order, o.speeds);
+    // the weight shakes what turns unevenly at twice the speed
+    if (o.multiples > 0)
+      refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true},
+                          2.0 * s.linear.running().orders()[0], o.speeds);
     o.resolve = s.linear.running().running().frequency_dependent();
   }
   analysis::UnbalanceSolver solver(s.linear, o);
@@ -566,8 +628,9 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   warn_of_no_motion(s, r);
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
-  io::Table found =
-      peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, largest));
+  const bool cancelled = is_rounding(largest, job.model);
+  const Largest judged = cancelled ? Largest{} : largest;
+  io::Table found = peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, judged));
   results::warn_of_tables(job, step.name, o.speeds);
   if (operating.empty() && law.operating[1] > 0)
     operating.assign(law.operating.begin(), law.operating.end());
@@ -581,9 +644,9 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   s.add_table("peaks", std::move(found));
   const std::string margins = add_margins(s, r, shown, peaks, law);
   add_probe_figures(s, r, shown, peaks);
-  add_multiples(s, r, shown, o.multiples);
+  const std::string twice = add_multiples(s, r, shown, o.multiples, o.breathes);
   add_force_figure(s, r, o.outputs);
-  add_zones(s, r, shown, law);
+  add_zones(s, with_peaks(r, peaks, solver, law), shown, peaks, law);
   add_grades(s, law);
   std::vector<double> also{o.speeds.front(), o.speeds.back()};
   for (const analysis::ResponsePeak& p : peaks)
@@ -609,9 +672,12 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   const std::string most =
       unbounded != peaks.end()
           ? fmt::format("without bound at {:.0f} rpm", to_rpm(unbounded->speed))
+      : cancelled
+          ? fmt::format("the unbalances cancel: {:.1g} m is rounding", largest.amplitude)
           : fmt::format("largest {} {} at {:.0f} rpm", readable(unit.factor * largest.amplitude),
                         unit.name, to_rpm(largest.speed));
-  s.finish(fmt::format("{} speeds, {} peaks, {}{}", r.points.size(), peaks.size(), most, margins));
+  s.finish(fmt::format("{} speeds, {} peaks, {}{}{}", r.points.size(), peaks.size(), most, twice,
+                       margins));
   return {std::move(o.probes), r, std::move(peaks)};
 }
 

@@ -117,14 +117,31 @@ void color_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
   }
 }
 
+bool is_within(double Omega, const std::array<double, 2>& speeds) {
+  constexpr double rounding = 1e-12;
+  const double turns = std::abs(Omega);
+  return turns >= speeds[0] * (1 - rounding) && turns <= speeds[1] * (1 + rounding);
+}
+
+/// Of all frequencies together, as if their largest fell on one instant.
+double peak_to_peak(const SteadyPoint& x, std::size_t probe) {
+  double amplitude = 0;
+  for (const auto& order : x.probe)
+    amplitude += order[probe].orbit().major;
+  for (std::size_t h = 2; h < x.multiple.size(); ++h)
+    amplitude += x.multiple[h][probe].orbit().major;
+  return 2 * amplitude;
+}
+
 }  // namespace
 
 void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
                const std::vector<analysis::ResponseProbe>& probes,
-               const model::UnbalanceStep& law) {
+               const std::vector<analysis::ResponsePeak>& peaks, const model::UnbalanceStep& law) {
   if (!law.zones) return;
   io::Table t;
   t.title = "Vibration zones after " + law.zones->source;
+  t.nan_means = "without bound";
   t.columns = {{"probe", "-", ""},
                {"speed", "rpm", "of the operating speeds, where it comes nearest to the borders"},
                {"amplitude", "um", "major axis, peak to peak"},
@@ -136,26 +153,30 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
     double nearest = -1, speed = 0, largest = 0;
     const double ratio = ratio_at(s, probes[p]);
     for (const SteadyPoint& x : r.points) {
-      const double turns = std::abs(x.Omega);
-      if (turns < law.operating[0] * (1 - 1e-12) || turns > law.operating[1] * (1 + 1e-12))
-        continue;
-      double pp = 0;
-      for (const auto& order : x.probe)
-        pp += 2 * order[p].orbit().major;
+      if (!is_within(x.Omega, law.operating)) continue;
+      const double pp = peak_to_peak(x, p);
       const double share = pp / borders_at(*law.zones, x.Omega, ratio).front();
       if (share <= nearest) continue;
       nearest = share;
       speed = x.Omega;
       largest = pp;
     }
-    if (nearest < 0) continue;
+    const auto endless = std::find_if(peaks.begin(), peaks.end(), [&](const auto& peak) {
+      return peak.probe == p && !peak.bounded && is_within(peak.speed, law.operating);
+    });
+    if (endless != peaks.end()) {
+      speed = endless->speed;
+      largest = infinity;
+    } else if (nearest < 0) {
+      continue;
+    }
     const std::vector<double> b = borders_at(*law.zones, speed, ratio);
     const std::string zone(1, static_cast<char>('A' + analysis::zone_of(largest, b)));
     io::Table::Cell cell = zone;
     using Mark = io::Table::Cell::Mark;
     cell.mark = zone == "A" || zone == "B" ? Mark::passed : Mark::failed;
-    t.add({probes[p].name, to_rpm(speed), 1e6 * largest, 1e6 * b[0], 1e6 * b[1], 1e6 * b[2],
-           std::move(cell)});
+    t.add({probes[p].name, to_rpm(speed), std::isfinite(largest) ? 1e6 * largest : nan, 1e6 * b[0],
+           1e6 * b[1], 1e6 * b[2], std::move(cell)});
     s.summary()["zones"][probes[p].name] = zone;
   }
   s.add_table("zones", std::move(t));

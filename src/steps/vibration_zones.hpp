@@ -8,11 +8,13 @@
 namespace whirl::steps {
 
 /// Zone of every probe where it comes nearest to the borders, over the operating speeds: a table, and
-/// colours in the figures of the probes, which stand in the section already.
+/// colours in the figures of the probes, which stand in the section already. r: with the peaks within
+/// the operating speeds among its points; where a peak has no bound there, the zone is D.
 void add_zones(results::FrequencyStep& s, const analysis::UnbalanceResponse& r,
-               const std::vector<analysis::ResponseProbe>& probes, const model::UnbalanceStep& law);
+               const std::vector<analysis::ResponseProbe>& probes,
+               const std::vector<analysis::ResponsePeak>& peaks, const model::UnbalanceStep& law);
 
-/// Unbalances of each shaft, added without regard to their angles, against a balance grade.
+/// Unbalances of each shaft, vectors at each place, against a balance grade.
 void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law);
 
 }  // namespace whirl::steps

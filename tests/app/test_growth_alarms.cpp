@@ -131,9 +131,16 @@ report = false
 name = "u"
 type = "unbalance_response"
 speed = { values = ["1000 rpm", "3500 rpm", "5000 rpm", "6000 rpm"] }
+[[step]]
+name = "s"
+type = "stability"
+speed = { start = "1000 rpm", stop = "6000 rpm", points = 11 }
 )");
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("unstable at 1000 rpm")) << d.log;
+  const double again = d.csv("s_onset.csv").last().at("speed [rpm]");
+  EXPECT_NEAR(again, 2318, 1);
+  EXPECT_TRUE(d.says(fmt::format("stable again above {:.8g} rpm", again))) << d.log;
 }
 
 // Unequal supports and an unround shaft without mass: Floquet's multipliers of the reduced equations have
@@ -269,6 +276,8 @@ TEST(GrowthAlarms, UnbalancesOfAPlaceAddUpWithTheirAngles) {
     const DeckRun d(two_pole(fmt::format(fmt::runtime(second), angle) + step));
     ASSERT_EQ(d.exit, 0) << d.log;
     EXPECT_NEAR(d.csv("u_balance_grade.csv").last().at("unbalance [g mm]"), sum, 1e-9) << angle;
+    EXPECT_EQ(d.says("the unbalances cancel"), sum == 0.0) << d.log;
+    EXPECT_FALSE(d.says("W10")) << d.log;  // of rounding
   }
 }
 
@@ -347,4 +356,116 @@ TEST(GrowthAlarms, BandsOfARotorThatRunsBackwardsAreItsOwn) {
     EXPECT_NEAR(backwards.at(rpm), mirrored.at(rpm), 1e-6 * std::abs(mirrored.at(rpm))) << rpm;
   EXPECT_GT(std::abs(growth("6e4", R"(["1500 rpm", "4000 rpm"])").at(4000.0) - mirrored.at(4000.0)),
             0.1);
+}
+
+// A moment of fixed direction on an overhung impeller drives whirl that the same torque on the turning
+// does not: the load is named.
+TEST(GrowthAlarms, AMomentAlongAShaftIsNamedWhereMotionsGrow) {
+  const auto deck = [](const std::string& torque) {
+    return R"(format = 1
+[shaft]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 400, 60], ["b", 300, 60]]
+[[disk]]
+name = "imp"
+at = "b:end"
+mass = "20 kg"
+Ip = "0.6 kg.m^2"
+Id = "0.35 kg.m^2"
+[[bearing]]
+name = "A"
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e8 N/m"
+kzz = "1e8 N/m"
+[[bearing]]
+name = "B"
+at = "a:end"
+type = "linear"
+kyy = "1e8 N/m"
+kzz = "1e8 N/m"
+[[unbalance]]
+at = "imp"
+amount = "20 g.mm"
+[[probe]]
+name = "p"
+at = "imp"
+[output]
+report = false
+)" + torque +
+           "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 4\nspeed = \"1000 rpm\"\n"
+           "[[step]]\nname = \"s\"\ntype = \"stability\"\nmodes = 4\n"
+           "speed = { values = [\"1000 rpm\", \"1200 rpm\"] }\n"
+           "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"1000 "
+           "rpm\"] }\n";
+  };
+  const DeckRun load(deck(
+      "[[load]]\nname = \"process\"\nat = \"imp\"\nmoment = [\"2000 N.m\", \"0 N.m\", \"0 N.m\"]\n"
+      "[[load]]\nname = \"motor\"\nat = \"a:start\"\n"
+      "moment = [\"-2000 N.m\", \"0 N.m\", \"0 N.m\"]\n"));
+  ASSERT_EQ(load.exit, 0) << load.log;
+  EXPECT_TRUE(load.says("unstable")) << load.log;
+  const std::string named =
+      "load 'process', 'motor' twists a shaft by a moment that has no potential";
+  EXPECT_TRUE(load.says("m: assumed: " + named)) << load.log;
+  EXPECT_TRUE(load.says("s: assumed: " + named)) << load.log;
+  EXPECT_TRUE(load.says("does beyond it; " + named)) << load.log;
+  const DeckRun drive(
+      deck("[[drive]]\nat = \"imp\"\ntype = \"torque\"\ntorque = \"2000 N.m\"\n"
+           "[[drive]]\nat = \"a:start\"\ntype = \"torque\"\ntorque = \"-2000 N.m\"\n"));
+  ASSERT_EQ(drive.exit, 0) << drive.log;
+  EXPECT_FALSE(drive.says("unstable")) << drive.log;
+  EXPECT_FALSE(drive.says("no potential")) << drive.log;
+}
+
+// Geared to another shaft, an unround one turns with no step but a transient.
+TEST(GrowthAlarms, AnUnroundGearedShaftIsSentToATransient) {
+  std::string deck = two_pole(R"([[shaft]]
+name = "wheel shaft"
+material = "steel"
+origin = ["0 mm", "200 mm", "0 mm"]
+speed_ratio = -0.5
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["w", 1200, 80]]
+[[disk]]
+name = "wheel"
+at = "w:mid"
+mass = "60 kg"
+Ip = "1.2 kg.m^2"
+Id = "0.6 kg.m^2"
+[[bearing]]
+name = "C"
+at = "w:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "D"
+at = "w:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "g"
+at = "a:mid"
+to = "w:mid"
+type = "gear"
+teeth = 20
+other_teeth = 40
+pitch_diameter = "133.33 mm"
+pressure_angle = "20 deg"
+stiffness = "1e8 N/m"
+drive = "positive"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["1000 rpm"] }
+)");
+  const std::string alone = "[shaft]";
+  deck.replace(deck.find(alone), alone.size(), "[[shaft]]");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("as its mean over a revolution")) << d.log;
+  EXPECT_TRUE(d.says("a transient turns with the shafts")) << d.log;
 }

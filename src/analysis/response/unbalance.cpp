@@ -30,7 +30,7 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
     : linear_(linear),
       options_(options),
       solver_(linear) {
-  if (options_.multiples > 0)
+  if (options_.breathes)
     periodic_ = std::make_unique<PeriodicResponse>(linear, std::max(6, options_.multiples + 1));
   else if (options_.turns_with_rotor && !options_.speeds.empty())
     axes_ = std::make_unique<RotatingAxes>(linear, options_.speeds.back());
@@ -41,6 +41,15 @@ void UnbalanceSolver::put_multiple(const VecXc& a, SteadyPoint& p) const {
   p.multiple.emplace_back();
   for (const ResponseProbe& probe : options_.probes)
     p.multiple.back().push_back(amplitude_at(linear_, a, probe.point));
+}
+
+void UnbalanceSolver::put_multiples(std::vector<VecXc> amplitudes, SteadyPoint& p) const {
+  const VecXc still = linear_.equilibrium().state.q.cast<Complex>();
+  for (int h = 0; h <= options_.multiples; ++h) {
+    VecXc& a = amplitudes[static_cast<std::size_t>(h)];
+    put_multiple(h == 0 ? VecXc(still + a) : a, p);
+    if (options_.shapes && h != 1) p.shape_of_multiples.push_back(std::move(a));
+  }
 }
 
 void UnbalanceSolver::stand_still(SteadyPoint& p) const {
@@ -58,12 +67,17 @@ VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
       put_multiple(none, p);
     return none;
   }
-  const VecXc mean = linear_.equilibrium().state.q.cast<Complex>() + motion.amplitude[0];
-  put_multiple(mean, p);
-  for (int h = 1; h <= options_.multiples; ++h)
-    put_multiple(motion.amplitude[static_cast<std::size_t>(h)], p);
+  put_multiples(motion.amplitude, p);
   p.left_out = motion.last_share;
   return motion.amplitude[1];
+}
+
+std::vector<VecXc> UnbalanceSolver::turn_unevenly(double Omega, const VecXc& once) {
+  std::vector<VecXc> out = axes_->multiples(Omega, options_.multiples);
+  for (VecXc& a : out)
+    linear_.system().complete(linear_.equilibrium().state, a);
+  out[1] = once;
+  return out;
 }
 
 VecXc UnbalanceSolver::force_of(std::size_t order, double Omega) {
@@ -86,13 +100,14 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     const bool still = w == 0.0 && linear_.forcing()[k].isZero(0.0);
     if (still || (w == 0.0 && periodic_)) {
       a = VecXc::Zero(linear_.system().size());
-      if (periodic_) stand_still(p);
+      if (options_.multiples > 0) stand_still(p);
     } else if (periodic_) {
       a = breathe(Omega, p);
     } else if (axes_) {
       a = axes_->response(Omega, -linear_.forcing()[k]);
       if (Omega < 0) a = a.conjugate().eval();
       linear_.system().complete(linear_.equilibrium().state, a);
+      if (with_outputs && options_.multiples > 0) put_multiples(turn_unevenly(Omega, a), p);
     } else if (solver_.prepare(Omega, w)) {
       a = force_of(k, Omega);
       solver_.solve(a);
@@ -114,6 +129,22 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     drop_rounding(largest, order);
   return p;
 }
+
+namespace {
+
+/// The same peak seen by two probes: speeds stay apart by 1e-7.
+void sort_apart(std::vector<SteadyPoint>& points) {
+  constexpr double apart = 1e-7;
+  std::sort(points.begin(), points.end(),
+            [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
+  points.erase(std::unique(points.begin(), points.end(),
+                           [](const SteadyPoint& a, const SteadyPoint& b) {
+                             return b.Omega - a.Omega < apart * std::abs(b.Omega);
+                           }),
+               points.end());
+}
+
+}  // namespace
 
 void UnbalanceSolver::find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i,
                                       ResponsePeak& peak) {
@@ -318,7 +349,35 @@ UnbalanceResponse UnbalanceSolver::run() {
         open, [&](std::size_t k) { return !shows_another(out.points, k / probes, k % probes); });
   }
   drop_unbounded(out.points);
+  if (options_.refine_peaks) add_tops_of_multiples(out.points);
   return out;
+}
+
+void UnbalanceSolver::add_tops_of_multiples(std::vector<SteadyPoint>& points) {
+  constexpr double close_enough = 1e-4;  // of the speed
+  constexpr double seen = 1e-3;          // of the largest, of all multiples
+  std::vector<SteadyPoint> tops;
+  for (int h = 2; h <= options_.multiples; ++h)
+    for (std::size_t probe = 0; probe < options_.probes.size(); ++probe) {
+      const auto size = [&](const SteadyPoint& p) {
+        return p.multiple[static_cast<std::size_t>(h)][probe].orbit().major;
+      };
+      double largest = 0;
+      std::vector<double> sizes;
+      for (const SteadyPoint& p : points) {
+        sizes.push_back(size(p));
+        largest = std::max({largest, sizes.back(), p.multiple[1][probe].orbit().major});
+      }
+      for (const std::size_t i : maxima_of(sizes)) {
+        if (!(sizes[i] > seen * largest)) continue;
+        const double top =
+            find_maximum(points[i - 1].Omega, points[i].Omega, sizes[i], points[i + 1].Omega,
+                         close_enough, [&](double Omega) { return size(at(Omega)); });
+        tops.push_back(at(top));
+      }
+    }
+  std::move(tops.begin(), tops.end(), std::back_inserter(points));
+  sort_apart(points);
 }
 
 void UnbalanceSolver::find_peaks_of(const std::vector<std::size_t>& numbers,
@@ -342,14 +401,7 @@ void UnbalanceSolver::find_peaks_of(const std::vector<std::size_t>& numbers,
                    [probes](const ResponsePeak& a, const ResponsePeak& b) {
                      return a.order * probes + a.probe < b.order * probes + b.probe;
                    });
-  std::sort(points.begin(), points.end(),
-            [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
-  // the same peak seen by two probes: keep speeds apart by 1e-7
-  points.erase(std::unique(points.begin(), points.end(),
-                           [](const SteadyPoint& a, const SteadyPoint& b) {
-                             return b.Omega - a.Omega < 1e-7 * std::abs(b.Omega);
-                           }),
-               points.end());
+  sort_apart(points);
 }
 
 }  // namespace whirl::analysis

@@ -22,8 +22,9 @@ struct UnbalanceOptions {
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
   bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
-  /// Multiples of the speed that are looked at of a rotor whose forces breathe with its turning
-  /// (periodic_response.hpp); 0: it does not.
+  /// Its forces breathe with its turning (periodic_response.hpp).
+  bool breathes = false;
+  /// Multiples of the speed that are looked at of a rotor that turns unevenly or breathes; 0: none.
   int multiples = 0;
   /// Put speeds in between those given until amplitudes between them are straight to a tenth: where
   /// supports answer by frequency peaks need not stand near critical speeds, nor be as wide as these
@@ -40,8 +41,11 @@ struct SteadyPoint {
   std::vector<std::vector<std::vector<Complex>>> output;  ///< [order][output][component]
   std::vector<VecXc> shape;                               ///< [order], when asked for
   /// [h][probe]: amplitudes of h times the speed; of 0 the mean place against the undeformed shaft,
-  /// real. Of a rotor that breathes.
+  /// real. Of a rotor that turns unevenly or breathes.
   std::vector<std::vector<PointAmplitude>> multiple;
+  /// Besides shape, when asked for: what the mean place is off the equilibrium by, and amplitudes of 2, 3
+  /// .. times the speed.
+  std::vector<VecXc> shape_of_multiples;
   double left_out = 0;  ///< of the last harmonic that was computed, share of the largest
   bool found = true;    ///< false: no periodic motion was; the amplitudes are NaN
 };
@@ -100,6 +104,8 @@ class UnbalanceSolver {
   bool is_bounded(const ResponsePeak& peak);
   /// Takes out what stands at peaks without bound: rounding.
   void drop_unbounded(std::vector<SteadyPoint>& points) const;
+  /// The speeds at which multiples of the speed are largest in the motion of a probe, between points.
+  void add_tops_of_multiples(std::vector<SteadyPoint>& points);
   /// Half-power points of a peak near the sample i.
   void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
   /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low
@@ -114,7 +120,11 @@ class UnbalanceSolver {
   /// Of a rotor that breathes: amplitude of the speed itself, the others into p; NaN and p.found =
   /// false where there is no periodic motion.
   VecXc breathe(double Omega, SteadyPoint& p);
+  /// Amplitudes of all multiples of a rotor that turns unevenly; once: of the speed itself.
+  std::vector<VecXc> turn_unevenly(double Omega, const VecXc& once);
   void put_multiple(const VecXc& a, SteadyPoint& p) const;
+  /// The same of all multiples; of 0 about the equilibrium.
+  void put_multiples(std::vector<VecXc> amplitudes, SteadyPoint& p) const;
   /// At rest.
   void stand_still(SteadyPoint& p) const;
 

@@ -103,6 +103,44 @@ class Coupling {
   std::vector<la::Mode> modes_;
 };
 
+/// Of every part of a node what is active of the node.
+std::vector<unsigned char> active_of(std::span<const unsigned char> nodes, Index parts) {
+  std::vector<unsigned char> out;
+  for (std::size_t i = 0; i + 6 <= nodes.size(); i += 6)
+    for (Index a = 0; a < parts; ++a)
+      out.insert(out.end(), nodes.begin() + static_cast<std::ptrdiff_t>(i),
+                 nodes.begin() + static_cast<std::ptrdiff_t>(i + 6));
+  return out;
+}
+
+/// 1 and the cosines and sines of these multiples of an angle that grows at W, rad/s, with their first
+/// two rates.
+struct Parts {
+  Parts(const std::vector<Index>& orders, double theta, double W) {
+    for (const Index m : orders) {
+      const double w = static_cast<double>(m), c = std::cos(w * theta), s = std::sin(w * theta);
+      if (m == 0) {
+        add(1.0, 0.0, 0.0);
+        continue;
+      }
+      add(c, -w * W * s, -w * w * W * W * c);
+      add(s, w * W * c, -w * w * W * W * s);
+    }
+  }
+  std::vector<double> value, rate, acceleration;
+
+ private:
+  void add(double f, double g, double gg) {
+    value.push_back(f);
+    rate.push_back(g);
+    acceleration.push_back(gg);
+  }
+};
+
+Index parts_of(const std::vector<Index>& orders) {
+  return 2 * static_cast<Index>(orders.size()) - (orders.front() == 0 ? 1 : 0);
+}
+
 }  // namespace
 
 void RotatingAxes::require(const SteadySystem& running) {
@@ -146,27 +184,27 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
          !(std::pow(share, static_cast<double>(harmonics_ + 1)) < negligible))
     ++harmonics_;
   step_ = half > steady ? 1 : 2;
-  const la::BlockPattern& p = linear.system().pattern();
   if (harmonics_ == 0) {
-    pattern_ = &p;
+    pattern_ = &linear.system().pattern();
     active_.assign(motion_.active().begin(), motion_.active().end());
     return;
   }
-  // Node i, harmonic part j -> node (2H+1) i + j: neighbours stay neighbours.
   const Index parts = 2 * harmonics_ + 1;
+  own_pattern_ = make_pattern(parts);
+  pattern_ = own_pattern_.get();
+  hill_ = la::MCK(*own_pattern_);
+  active_ = active_of(motion_.active(), parts);
+}
+
+std::unique_ptr<la::BlockPattern> RotatingAxes::make_pattern(Index parts) const {
+  const la::BlockPattern& p = linear_.system().pattern();
   std::vector<std::pair<Index, Index>> couplings;
   for (Index i = 0; i < p.size(); ++i)
     for (Index s = p.row_start()[idx(i)]; s < p.row_start()[idx(i) + 1]; ++s)
       for (Index a = 0; a < parts; ++a)
         for (Index b = 0; b < parts; ++b)
           couplings.emplace_back(parts * i + a, parts * p.cols()[idx(s)] + b);
-  own_pattern_ = std::make_unique<la::BlockPattern>(parts * p.size(), couplings);
-  pattern_ = own_pattern_.get();
-  hill_ = la::MCK(*own_pattern_);
-  for (Index i = 0; i < p.size(); ++i)
-    for (Index a = 0; a < parts; ++a)
-      for (int c = 0; c < 6; ++c)
-        active_.push_back(motion_.active()[idx(6 * i + c)]);
+  return std::make_unique<la::BlockPattern>(parts * p.size(), couplings);
 }
 
 void RotatingAxes::find_ratio(double Omega) {
@@ -256,45 +294,42 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
     sample(Omega, 0.0, lambda);
     return turned_;
   }
-  // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic
-  // of its points less those of the product.
-  const Index parts = 2 * harmonics_ + 1, points = 4 * harmonics_ + 4;
-  const double W = speed(Omega);
+  std::vector<Index> orders;
+  for (Index h = 0; h <= harmonics_; ++h)
+    orders.push_back(step_ * h);
+  balance(Omega, lambda, orders, hill_);
+  return hill_;
+}
+
+void RotatingAxes::balance(double Omega, Complex lambda, const std::vector<Index>& orders,
+                           la::MCK& out) {
+  // Galerkin's method by the trapezoidal rule: exact up to the harmonic of its points less those of
+  // the product.
+  const Index parts = parts_of(orders), points = 2 * parts + 2;
   const la::BlockPattern& p = linear_.system().pattern();
-  for (la::BlockMatrix<6>* m : {&hill_.M, &hill_.C, &hill_.K})
+  for (la::BlockMatrix<6>* m : {&out.M, &out.C, &out.K})
     m->set_zero();
-  VecX f(parts), g(parts), gg(parts);
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(step_ * points) * static_cast<double>(n);
-    sample(Omega, theta, lambda);
-    f[0] = 1.0;
-    g[0] = gg[0] = 0.0;
-    for (Index h = 1; h <= harmonics_; ++h) {
-      const double w = static_cast<double>(step_ * h), c = std::cos(w * theta),
-                   s = std::sin(w * theta);
-      f[2 * h - 1] = c;
-      g[2 * h - 1] = -w * W * s;
-      gg[2 * h - 1] = -w * w * W * W * c;
-      f[2 * h] = s;
-      g[2 * h] = w * W * c;
-      gg[2 * h] = -w * w * W * W * s;
-    }
+    if (n == 0 || !constant()) sample(Omega, theta, lambda);
+    const Parts f(orders, theta, speed(Omega));
     for (Index i = 0; i < p.size(); ++i)
       for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
         const Index j = p.cols()[idx(k)];
         const auto M = turned_.M.block(k), C = turned_.C.block(k), K = turned_.K.block(k);
         for (Index a = 0; a < parts; ++a) {
-          const double w = (a == 0 ? 1.0 : 2.0) / static_cast<double>(points) * f[a];
+          const double share = (a == 0 && orders.front() == 0 ? 1.0 : 2.0);
+          const double w = share / static_cast<double>(points) * f.value[idx(a)];
           for (Index b = 0; b < parts; ++b) {
-            const Index t = own_pattern_->slot(parts * i + a, parts * j + b);
-            hill_.M.block(t) += (w * f[b]) * M;
-            hill_.C.block(t) += (w * f[b]) * C + (2.0 * w * g[b]) * M;
-            hill_.K.block(t) += (w * f[b]) * K + (w * g[b]) * C + (w * gg[b]) * M;
+            const Index t = out.K.pattern().slot(parts * i + a, parts * j + b);
+            const double value = f.value[idx(b)], rate = f.rate[idx(b)];
+            out.M.block(t) += (w * value) * M;
+            out.C.block(t) += (w * value) * C + (2.0 * w * rate) * M;
+            out.K.block(t) += (w * value) * K + (w * rate) * C + (w * f.acceleration[idx(b)]) * M;
           }
         }
       }
   }
-  return hill_;
 }
 
 VecXc RotatingAxes::constant_part(const VecXc& x) const {
@@ -373,6 +408,84 @@ VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
   direct->solve(x);
   const VecXc a = first_order_of(x);
   return backward ? VecXc(a.conjugate()) : a;
+}
+
+VecX RotatingAxes::unbalanced(double Omega, const std::vector<Index>& orders) {
+  const system::System& s = linear_.system();
+  const Equilibrium& e = linear_.equilibrium();
+  const Index parts = parts_of(orders), points = 4 * (orders.back() + 2);
+  VecX out = VecX::Zero(6 * parts * s.nodes()), r(s.size());
+  for (Index n = 0; n < points; ++n) {
+    const double theta = two_pi / static_cast<double>(points) * static_cast<double>(n);
+    if (!linear_.running().residual_at(e.state.frames, Omega, e.state.q, theta / ratio_, r))
+      throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+    const Parts f(orders, theta, 1.0);
+    for (Index i = 0; i < s.nodes(); ++i) {
+      const Mat3& chart = e.state.frames.axes(i);
+      const Matrix<6> J = turn(s, chart, i, 0.0, true);
+      const Vector<6> lateral = J * J * r.segment<6>(6 * i);  // of -r
+      const Vector<6> turned = turn(s, chart, i, theta, false).transpose() * lateral;
+      for (Index a = 0; a < parts; ++a) {
+        const double share = (a == 0 && orders.front() == 0 ? 1.0 : 2.0);
+        out.segment<6>(6 * (parts * i + a)) +=
+            share / static_cast<double>(points) * f.value[idx(a)] * turned;
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
+  WHIRL_EXPECTS(count >= 2);
+  const system::System& s = linear_.system();
+  if (odd_.empty()) {
+    // a force of fixed direction turns backwards once a revolution here, and what has the period of
+    // half a revolution joins every other multiple to that
+    for (Index m = step_ == 1 ? 0 : 1; m <= 2 * harmonics_ + 1; m += step_)
+      odd_.push_back(m);
+    odd_pattern_ = make_pattern(parts_of(odd_));
+    odd_active_ = active_of(motion_.active(), parts_of(odd_));
+    odd_hill_ = la::MCK(*odd_pattern_);
+  }
+  const double W = speed(Omega);
+  balance(Omega, hysteretic() ? Complex(0, std::abs(W)) : Complex(), odd_, odd_hill_);
+  VecX x = unbalanced(Omega, odd_);
+  for (Index k = 0; k < x.size(); ++k)
+    if (!odd_active_[idx(k)]) x[k] = 0.0;
+  std::vector<VecXc> out(idx(count + 1), VecXc::Zero(s.size()));
+  const auto direct = la::make_direct_solver<double>(*odd_pattern_, odd_active_);
+  if (direct->factor(odd_hill_, 0.0, 0.0, 1.0) != la::Status::ok) {
+    for (VecXc& a : out)
+      a.setConstant(Complex(nan, nan));
+    return out;
+  }
+  direct->solve(x);
+  const Index parts = parts_of(odd_);
+  const Complex i(0, 1);
+  for (Index n = 0; n < s.nodes(); ++n) {
+    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
+    const Matrix<6> lateral = -J * J;
+    const Matrix<6> along = Matrix<6>::Identity() - lateral;
+    const auto add = [&](Index h, const Eigen::Matrix<Complex, 6, 1>& a) {
+      if (h <= count) out[idx(h)].segment<6>(6 * n) += a;
+    };
+    Index part = 0;
+    for (const Index m : odd_) {
+      // Re(c exp(i m theta)) in axes that turn with theta
+      Eigen::Matrix<Complex, 6, 1> c = x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
+      if (m > 0) c -= i * x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
+      const Eigen::Matrix<Complex, 6, 1> forth = (lateral - i * J) * c,
+                                         back = (lateral + i * J) * c;
+      add(m + 1, (m == 0 ? 1.0 : 0.5) * forth);
+      if (m > 1) add(m - 1, 0.5 * back);
+      if (m == 1) add(0, 0.5 * back.real().cast<Complex>());
+      add(m, along * c);
+    }
+  }
+  if (W < 0)
+    for (VecXc& a : out)
+      a = a.conjugate().eval();
+  return out;
 }
 
 Index RotatingAxes::negative_stiffnesses(double Omega) {

@@ -63,10 +63,25 @@ class RotatingAxes {
   /// @throws Error (E88): the forces do not turn with the rotor.
   VecXc response(double Omega, const VecXc& f);
 
+  /// Steady motion besides that under what turns: of weight and other forces of fixed direction, which
+  /// meet another stiffness or inertia at every angle. Amplitudes a_h of Re(a_h exp(i h w t)),
+  /// w = |speed(Omega)|, h = 0 .. count, about the equilibrium of the mean; a_0 real; a_1 means nothing
+  /// (response()). Lateral; NaN as response(). On isotropic supports the mean and twice the speed are
+  /// all: the weight turns backwards in the axes.
+  /// @pre count >= 2.
+  std::vector<VecXc> multiples(double Omega, int count);
+
  private:
   /// Of the lines whose matrices turn with them; where none do, of the first that turns.
   void find_ratio(double Omega);
   VecXc first_order_of(const VecX& x) const;
+  /// Harmonic balance in sines and cosines of these multiples of the angle of the axes, ascending; 0:
+  /// the constant part. out stands on a pattern of make_pattern().
+  void balance(double Omega, Complex lambda, const std::vector<Index>& orders, la::MCK& out);
+  /// Node i, part j -> node parts i + j: neighbours stay neighbours.
+  std::unique_ptr<la::BlockPattern> make_pattern(Index parts) const;
+  /// What is unbalanced at the equilibrium, in these parts.
+  VecX unbalanced(double Omega, const std::vector<Index>& orders);
   /// Matrices in rotating axes at one angle of these, on the system's pattern, into turned_.
   void sample(double Omega, double theta, Complex lambda);
   /// The equilibrium at hand serves this speed too.
@@ -80,6 +95,11 @@ class RotatingAxes {
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
   la::MCK turned_, raw_, hill_;
+  /// Of multiples(): made when first wanted.
+  std::vector<Index> odd_;
+  std::unique_ptr<la::BlockPattern> odd_pattern_;
+  std::vector<unsigned char> odd_active_;
+  la::MCK odd_hill_;
 };
 
 /// A range of speeds in which a motion grows.

@@ -1,0 +1,356 @@
+// Rotors that are not the same across two diameters: couplings, blades, slotted rolls. Where they are
+// unstable, and what weight and misalignment shake at twice the speed.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+using std::numbers::pi;
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+namespace {
+
+const std::string no_report = "[output]\nreport = false\n";
+
+/// Beam of 2 m without mass, E I 1.442e5 and 1.03e5 N m2, 100 kg in the middle, damped by 200 N s/m.
+std::string slotted_roll(const std::string& parts) {
+  return R"(format = 1
+[[material]]
+name = "light"
+E = "206 GPa"
+G = "79 GPa"
+density = "1e-3 kg/m^3"
+[shaft]
+name = "roll"
+material = "light"
+shear = "none"
+[[shaft.section]]
+name = "a"
+length = "2000 mm"
+min_elements = 2
+general = { A = "3000 mm^2", Iy = "5e5 mm^4", Iz = "7e5 mm^4", J = "1.2e6 mm^4", kappa_y = 0.85, kappa_z = 0.85 }
+[[disk]]
+name = "shell"
+at = "a:mid"
+mass = "100 kg"
+Ip = "2 kg.m^2"
+Id = "1.5 kg.m^2"
+[[bearing]]
+name = "A"
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "B"
+at = "a:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "air"
+at = "a:mid"
+type = "linear"
+cyy = "200 N.s/m"
+czz = "200 N.s/m"
+[[unbalance]]
+at = "shell"
+amount = "5000 g.mm"
+phase = "30 deg"
+[[probe]]
+name = "p"
+at = "shell"
+)" + no_report +
+         parts;
+}
+
+struct TwoCircles {
+  double mean, twice;  ///< m
+};
+
+/// In axes that turn with the shaft the weight turns backwards: (K - m W^2 + c W J - m W^2 + i W (c + 2 m W
+/// J)) q = m g (i, -1), J a quarter turn; forward and backward circles of q are the second multiple and the
+/// mean in fixed axes.
+TwoCircles of_weight(double W) {
+  using Complex = std::complex<double>;
+  constexpr double E = 206e9, length = 2, m = 100, c = 200, g = 9.80665;
+  const double k = 48 * E / std::pow(length, 3);
+  const Complex i(0, 1);
+  const Complex a = k * 7e-7 - 2 * m * W * W + i * W * c, b = k * 5e-7 - 2 * m * W * W + i * W * c,
+                across = c * W + i * W * 2.0 * m * W;
+  const Complex fy = m * g * i, fz = -m * g, det = a * b + across * across;
+  const Complex y = (fy * b + across * fz) / det, z = (a * fz - across * fy) / det;
+  return {std::abs(std::conj(y) + i * std::conj(z)) / 2, std::abs(y + i * z) / 2};
+}
+
+/// A body carried by a coupling of 3e6 and 1e6 N/m across.
+const std::string on_a_coupling = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "a"
+[[shaft.section]]
+name = "al"
+length = "200 mm"
+rigid = true
+[[shaft]]
+name = "b"
+origin = ["200 mm", "0 mm", "0 mm"]
+[[shaft.section]]
+name = "bl"
+length = "200 mm"
+rigid = true
+[[disk]]
+name = "A"
+at = "al:mid"
+mass = "50 kg"
+Ip = "1 kg.m^2"
+Id = "0.6 kg.m^2"
+[[disk]]
+name = "B"
+at = "bl:start"
+mass = "30 kg"
+Ip = "0.3 kg.m^2"
+Id = "0.2 kg.m^2"
+[[bearing]]
+name = "BA"
+at = "al:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "BA2"
+at = "al:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "BB"
+at = "bl:start"
+type = "linear"
+kxx = "1e8 N/m"
+cxx = "1e3 N.s/m"
+krr = "1e6 N.m/rad"
+crr = "100 N.m.s/rad"
+[[bearing]]
+name = "cpl"
+at = "al:end"
+to = "bl:start"
+type = "coupling"
+krxx = "1e6 N.m/rad"
+crxx = "50 N.m.s/rad"
+kyy = "3e6 N/m"
+kzz = "1e6 N/m"
+[[unbalance]]
+at = "B"
+amount = "10 g.mm"
+[[probe]]
+name = "p"
+at = "B"
+)" + no_report;
+
+/// A body with moments of inertia 1.2, 2.2, 1.2 kg m2 on a tilting spring.
+const std::string two_blades = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "r"
+[[shaft.section]]
+name = "link"
+length = "200 mm"
+rigid = true
+[[disk]]
+name = "two blades"
+at = "link:mid"
+mass = "30 kg"
+inertia = ["1.2 kg.m^2", "2.2 kg.m^2", "1.2 kg.m^2", "0 kg.m^2", "0 kg.m^2", "0 kg.m^2"]
+[[bearing]]
+name = "B"
+at = "link:mid"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+cyy = "1e4 N.s/m"
+czz = "1e4 N.s/m"
+krr = "2e5 N.m/rad"
+)" + no_report;
+
+std::string stability(const char* from, const char* to) {
+  return fmt::format(
+      "[[step]]\nname = \"s\"\ntype = \"stability\"\n"
+      "speed = {{ start = \"{} rpm\", stop = \"{} rpm\", points = 11 }}\n",
+      from, to);
+}
+
+}  // namespace
+
+// Half of what a slotted roll is asked about: its weight at half the critical speed, 437 times its
+// unbalance.
+TEST(UnevenRotors, WeightShakesASlottedRollAtTwiceTheSpeed) {
+  const DeckRun d(slotted_roll(R"([[bearing]]
+name = "stop"
+at = "a:mid"
+type = "rub"
+gap = "4 mm"
+stiffness = "1e7 N/m"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["300 rpm", "410 rpm", "500 rpm"] }
+)"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("u_multiples.csv");
+  ASSERT_EQ(t.rows.size(), 3u);
+  for (const std::vector<double>& cells : t.rows) {
+    const std::map<std::string, double> row = t.named(cells);
+    const TwoCircles right = of_weight(row.at("speed [rpm]") * pi / 30);
+    EXPECT_NEAR(row.at("p 2x forward [m]") / right.twice, 1, 2e-3);
+    EXPECT_NEAR(std::hypot(row.at("p mean y [m]"), row.at("p mean z [m]")) / right.mean, 1, 2e-3);
+    EXPECT_LT(row.at("p 2x backward [m]"), 1e-3 * right.twice);
+  }
+  EXPECT_TRUE(d.says("at twice the speed 6.8")) << d.log;
+  EXPECT_TRUE(d.says("W11")) << d.log;  // of the stop, which the first multiple is far from
+}
+
+// Half the critical speed lies between the speeds of the range: it is among those looked at.
+TEST(UnevenRotors, HalfTheCriticalSpeedIsLookedAt) {
+  const DeckRun d(slotted_roll(R"([[step]]
+name = "u"
+type = "unbalance_response"
+speed = { start = "300 rpm", stop = "500 rpm", points = 3 }
+)"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  double most = 0, right = 0;
+  const Columns t = d.csv("u_multiples.csv");
+  for (const std::vector<double>& cells : t.rows)
+    most = std::max(most, cells[t.column("p 2x forward [m]")]);
+  for (double rpm = 300; rpm < 500; rpm += 0.1)
+    right = std::max(right, of_weight(rpm * pi / 30).twice);
+  EXPECT_NEAR(most / right, 1, 0.01);
+}
+
+// On supports that are unequal too, against the motion itself.
+TEST(UnevenRotors, MultiplesAreThoseOfTheMotion) {
+  std::string deck = slotted_roll(R"([[bearing]]
+name = "side"
+at = "a:mid"
+type = "linear"
+kyy = "2e5 N/m"
+kyz = "5e4 N/m"
+cyy = "2000 N.s/m"
+czz = "1000 N.s/m"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["-430 rpm"] }
+[[step]]
+name = "t"
+type = "transient"
+duration = "2.5 s"
+initial_speed = "-430 rpm"
+[[drive]]
+step = "t"
+at = "a:start"
+type = "speed"
+speed = "-430 rpm"
+)");
+  deck.replace(deck.find(no_report), no_report.size(), no_report + "every = \"1 ms\"\n");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const double W = -430 * pi / 30;
+  const Columns t = d.csv("t.csv");
+  const int turns = 5;
+  const double last = t.last().at("t [s]"), from = last - turns * 2 * pi / std::abs(W);
+  std::complex<double> forward = 0, backward = 0, mean = 0;
+  double weight = 0;
+  for (const std::vector<double>& cells : t.rows) {
+    const std::map<std::string, double> row = t.named(cells);
+    const double time = row.at("t [s]");
+    if (time < from) continue;
+    const std::complex<double> r(row.at("p.y [m]"), row.at("p.z [m]")), i(0, 1);
+    const double x = (time - from) / (last - from), hann = std::pow(std::sin(pi * x), 2);
+    forward += hann * r * std::exp(-2.0 * i * W * time);
+    backward += hann * r * std::exp(2.0 * i * W * time);
+    mean += hann * r;
+    weight += hann;
+  }
+  const auto u = d.csv("u_multiples.csv").last();
+  EXPECT_NEAR(u.at("p 2x forward [m]") / std::abs(forward / weight), 1, 5e-3);
+  EXPECT_NEAR(u.at("p 2x backward [m]") / std::abs(backward / weight), 1, 5e-3);
+  EXPECT_NEAR(u.at("p mean z [m]") / mean.imag() * weight, 1, 5e-3);
+}
+
+TEST(UnevenRotors, ACouplingThatIsUnequalAcrossHasItsBand) {
+  const DeckRun d(on_a_coupling + stability("500", "5000") +
+                  "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\n"
+                  "speed = { values = [\"2000 rpm\"] }\n");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const auto band = d.csv("s_bands.csv").last();
+  EXPECT_NEAR(band.at("from [rpm]"), std::sqrt(1e6 / 30) * 30 / pi, 0.01);
+  EXPECT_NEAR(band.at("to [rpm]"), std::sqrt(3e6 / 30) * 30 / pi, 0.01);
+  EXPECT_TRUE(d.says("W13")) << d.log;
+  const DeckRun linear(on_a_coupling +
+                       "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\n"
+                       "initial_speed = \"100 rpm\"\nlinear = true\n");
+  EXPECT_EQ(linear.exit, 3);
+  EXPECT_TRUE(linear.says("the stiffness of coupling 'cpl' turns with its shafts")) << linear.log;
+}
+
+// k = (Jy - Jx) W^2: the blades swing out.
+TEST(UnevenRotors, TwoBladesAreUnstableAboveTheirSpeed) {
+  const DeckRun d(two_blades + stability("1000", "6000") +
+                  "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"3000 rpm\"\n");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_NEAR(d.csv("s_bands.csv").last().at("from [rpm]"), std::sqrt(2e5) * 30 / pi, 0.01);
+  EXPECT_FALSE(d.says("s: stable")) << d.log;
+  EXPECT_TRUE(d.says("growth in bands of speed not excluded")) << d.log;
+}
+
+// A zone is that of the largest motion over the operating speeds, peaks between the speeds included.
+TEST(UnevenRotors, ZonesKnowThePeaksBetweenTheSpeeds) {
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "r"
+[[shaft.section]]
+name = "link"
+length = "200 mm"
+rigid = true
+[[disk]]
+name = "wheel"
+at = "link:mid"
+mass = "20 kg"
+Ip = "0.05 kg.m^2"
+Id = "0.03 kg.m^2"
+[[bearing]]
+name = "B"
+at = "link:mid"
+type = "linear"
+kxx = "1e6 N/m"
+kyy = "2e6 N/m"
+kzz = "3e6 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+krr = "1e5 N.m/rad"
+crr = "10 N.m.s/rad"
+[[unbalance]]
+at = "wheel"
+amount = "80 g.mm"
+[[probe]]
+name = "p"
+at = "wheel"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["1000 rpm", "2000 rpm", "4000 rpm", "5000 rpm"] }
+operating_speed = ["2700 rpm", "3200 rpm"]
+zones = {}
+)" + no_report);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const auto zone = d.csv("u_zones.csv").last();
+  const auto peak = d.csv("u_peaks.csv").last();
+  EXPECT_NEAR(zone.at("amplitude [um]"), 2e6 * peak.at("amplitude [m]"), 1e-3);
+  EXPECT_NEAR(zone.at("speed [rpm]"), 3021.6, 0.1);
+}
