@@ -98,6 +98,15 @@ class Coupling {
     return most;
   }
 
+  /// rad/s, ascending: of the motions looked at.
+  std::vector<double> frequencies() const {
+    std::vector<double> out;
+    for (const la::Mode& m : modes_)
+      out.push_back(std::abs(m.lambda.imag()));
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
  private:
   const la::MCK& constant_;
   std::vector<la::Mode> modes_;
@@ -166,6 +175,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   const la::MCK first = turned_;
   const la::MCK fixed = raw_;
   const Coupling coupling(first, motion_.active());
+  frequencies_ = coupling.frequencies();
   double varies = 0, half = 0, joined = 0;
   for (const double theta : {0.7, 1.9, 2.6}) {
     sample(Omega, theta, {});
@@ -330,6 +340,15 @@ void RotatingAxes::balance(double Omega, Complex lambda, const std::vector<Index
         }
       }
   }
+}
+
+double RotatingAxes::reach(double Omega) const {
+  constexpr std::size_t always = 3;  // motions of least frequency
+  constexpr double margin = 1.2, far = 4.0;
+  const double joined = static_cast<double>(step_ * harmonics_ + 1) * std::abs(speed(Omega));
+  const double own = frequencies_.size() < always ? 0.0 : frequencies_[always - 1];
+  const double most = margin * std::max(joined, own);
+  return constant() || frequencies_.empty() || frequencies_.back() <= far * most ? infinity : most;
 }
 
 VecXc RotatingAxes::constant_part(const VecXc& x) const {
@@ -672,6 +691,12 @@ class BandSearch {
   static la::ModeOptions options(const RotatingAxes& axes, const BandOptions& o) {
     la::ModeOptions l;
     l.count = o.modes * (2 * axes.harmonics() + 1);
+    // of a light shaft that many would reach a thousand times the speed, each in copies close together
+    const double reach = axes.reach(o.speeds.back());
+    if (std::isfinite(reach)) {
+      l.count = 0;
+      l.max_frequency = reach;
+    }
     l.certify = l.growing = true;
     return l;
   }
@@ -814,6 +839,7 @@ double largest_growth(RotatingAxes& axes, double Omega, Index modes) {
   BandOptions o;
   o.modes = modes;
   o.sense = Omega < 0.0 ? -1.0 : 1.0;
+  o.speeds = {std::abs(Omega)};
   return BandSearch(axes, o).at(std::abs(Omega)).rate;
 }
 

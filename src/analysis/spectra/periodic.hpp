@@ -45,6 +45,12 @@ class RotatingAxes {
   bool constant() const { return harmonics_ == 0; }
   Index harmonics() const { return harmonics_; }
   bool hysteretic() const { return linear_.hysteretic(); }
+  /// rad/s, in these axes: beyond it what turns makes no motion grow at speeds up to this one, though
+  /// motions are found there; infinite: the motions of least frequency end below it, or not far above. The multiples
+  /// that are kept join two motions whose frequencies add up to one of them, or differ by it where one
+  /// has negative energy, which slower whirl than the rotor's turning has (its frequency here is below
+  /// the speed). The three motions of least frequency lie within it in any case.
+  double reach(double Omega) const;
   /// Something does turn with the rotor: the matrices in fixed axes are not constant.
   bool turning() const { return turning_; }
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
@@ -91,6 +97,7 @@ class RotatingAxes {
   bool turning_ = false, moved_ = false;
   double ratio_ = 1.0;  ///< speed of the axes over the reference's
   Index harmonics_ = 0, step_ = 2;
+  std::vector<double> frequencies_;  ///< rad/s, of some motions of the constant matrices
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
