@@ -95,23 +95,22 @@ PadStanding TiltingPad::standing(const LateralMotion& m, const Vec2& q) const {
   return s;
 }
 
-double TiltingPad::settled_tilt(const LateralMotion& m) const {
-  const auto place = [&](double tilt) {
-    return FilmLaw<FiniteJournal>::point(seen(m, Vec2(tilt, 0.0), Vec2::Zero()));
+double TiltingPad::righting_moment(const LateralMotion& m, double tilt) const {
+  FilmForce f;
+  film.evaluate(FilmLaw<FiniteJournal>::point(seen(m, Vec2(tilt, 0.0), Vec2::Zero())), f);
+  return f.F.dot(direction(0)) + tilt_stiffness * tilt;
+}
+
+Vec2 TiltingPad::touching_tilts(const LateralMotion& m) const {
+  const auto inside = [&](double tilt) {
+    return film.inside(FilmLaw<FiniteJournal>::point(seen(m, Vec2(tilt, 0.0), Vec2::Zero())));
   };
-  const auto inside = [&](double tilt) { return film.inside(place(tilt)); };
-  const auto moment = [&](double tilt) {
-    FilmForce f;
-    film.evaluate(place(tilt), f);
-    return f.F.dot(direction(0)) + tilt_stiffness * tilt;
-  };
-  // the tilts at which an edge of the pad touches
   const double size = film.surface->pad_clearance() / arm;
   double middle = 0.0;
   for (double look = 0.0; !inside(middle) && look < 3.0; look += 0.05)
     for (const double side : {look, -look})
       if (inside(side * size)) middle = side * size;
-  if (!inside(middle)) return nan;
+  if (!inside(middle)) return Vec2::Constant(nan);
   const auto edge = [&](double side) {
     double in = middle, out = middle + side * size;
     while (inside(out) && std::abs(out) < 1e3 * size) {
@@ -124,10 +123,33 @@ double TiltingPad::settled_tilt(const LateralMotion& m) const {
     }
     return in;
   };
-  const double low = edge(-1.0), high = edge(1.0);
-  // the left side grows through zero where the pad is stable
-  if (!(moment(low) < 0.0) || !(moment(high) > 0.0)) return nan;
-  return root_between(low, high, tilt_stiffness * size, moment);
+  return {edge(-1.0), edge(1.0)};
+}
+
+double TiltingPad::settled_tilt(const LateralMotion& m) const {
+  const Vec2 ends = touching_tilts(m);
+  const auto moment = [&](double tilt) { return righting_moment(m, tilt); };
+  if (!(moment(ends[0]) < 0.0) || !(moment(ends[1]) > 0.0)) return nan;
+  const double size = film.surface->pad_clearance() / arm;
+  return root_between(ends[0], ends[1], tilt_stiffness * size, moment);
+}
+
+std::vector<double> TiltingPad::balances(const LateralMotion& m) const {
+  constexpr int looks = 160;
+  const Vec2 ends = touching_tilts(m);
+  std::vector<double> out;
+  if (!ends.allFinite()) return out;
+  const auto moment = [&](double tilt) { return righting_moment(m, tilt); };
+  const double size = film.surface->pad_clearance() / arm;
+  double before = ends[0], below = moment(before);
+  for (int k = 1; k <= looks; ++k) {
+    const double tilt = ends[0] + (ends[1] - ends[0]) * k / looks, here = moment(tilt);
+    if (below < 0.0 && here >= 0.0)
+      out.push_back(root_between(before, tilt, tilt_stiffness * size, moment));
+    before = tilt;
+    below = here;
+  }
+  return out;
 }
 
 Vec2 TiltingPad::settled(const LateralMotion& m) const {

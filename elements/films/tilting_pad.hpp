@@ -86,8 +86,18 @@ struct TiltingPad {
   /// The tilt at which a journal at rest leaves the pad in balance on a rigid pivot, rad. NaN: there
   /// is none, the pad turns until it touches.
   double settled_tilt(const LateralMotion& m) const;
+  /// All tilts in stable balance there, rad, ascending: a lightly loaded pad may carry, or rest where
+  /// its film begins.
+  std::vector<double> balances(const LateralMotion& m) const;
   /// Tilt and compression of an elastic pivot in balance; NaN: there are none.
   Vec2 settled(const LateralMotion& m) const;
+
+ private:
+  /// The least and the largest tilt, rad, at which an edge of the pad touches a journal at rest; NaN:
+  /// it touches at all.
+  Vec2 touching_tilts(const LateralMotion& m) const;
+  /// Moment about a rigid pivot that turns the pad back, N m: it grows through zero in stable balance.
+  double righting_moment(const LateralMotion& m, double tilt) const;
 };
 
 /// With the rest spring and damper.

@@ -118,6 +118,22 @@ class PadRing {
     }
     return out;
   }
+  std::vector<double> other_loads(const NodeAt& at) const {
+    constexpr double apart = 1e-3;  // of a radian of the pad's clearance
+    std::vector<double> out;
+    for (std::size_t k = 0; k < pads(); ++k) {
+      const elements::TiltingPad& pad = pads_[k];
+      const auto m = kernel(k).motion_of(states(k, at), {});
+      elements::LateralMotion pressed = m.journal;
+      pressed.r -= m.q.y() * pad.pivot;
+      double other = nan;
+      for (const double tilt : pad.balances(pressed))
+        if (std::abs(tilt - m.q.x()) > apart * pad.film.surface->pad_clearance() / pad.arm)
+          other = pad.standing(m.journal, Vec2(tilt, m.q.y())).load;
+      out.push_back(other);
+    }
+    return out;
+  }
   std::vector<TiltingPads::Face> faces(const NodeAt& at) const {
     std::vector<TiltingPads::Face> out;
     for (std::size_t k = 0; k < pads(); ++k) {
@@ -270,6 +286,7 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   pads.unknowns = ring->unknowns();
   pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };
   pads.faces = [ring](const NodeAt& at) { return ring->faces(at); };
+  pads.other_loads = [ring](const NodeAt& at) { return ring->other_loads(at); };
   pads.coefficients = [ring](const NodeAt& at, int points) {
     return ring->coefficients(at, points);
   };

@@ -6,6 +6,7 @@
 #include <results/held.hpp>
 #include <results/linear_limits.hpp>
 #include <results/steady_rotation.hpp>
+#include <results/support_coefficients.hpp>
 #include <run/progress.hpp>
 #include <run/support_diagnosis.hpp>
 
@@ -362,8 +363,28 @@ std::string equilibrium_at(double Omega) {
   return fmt::format("the equilibrium at {:.6g} rpm", to_rpm(Omega));
 }
 
+void FrequencyStep::say_unloaded_pads(const system::State& still) {
+  const auto tilts = [](const model::Bearing& b) {
+    return std::holds_alternative<model::TiltingPadJournal>(b.law);
+  };
+  if (std::none_of(job.model.bearings.begin(), job.model.bearings.end(), tilts)) return;
+  run::StepState state;
+  state.state = still;
+  state.speed = linear.Omega();
+  const std::vector<std::string> unloaded = unloaded_pads(calc_support_coefficients(job, state));
+  if (unloaded.empty()) return;
+  io::Value& list = summary()["unloaded pads"];
+  const bool listed = !list.is_null();  // of every speed
+  for (const std::string& said : unloaded) {
+    if (!listed) list.push(said);
+    section.text += " " + capital(said) + ".";
+    if (!job.options.quiet) std::fputs(fmt::format("  {}: {}\n", step.name, said).c_str(), stderr);
+  }
+}
+
 void FrequencyStep::finish(const std::string& line) {
   if (const system::State& still = linear.equilibrium().state; still.q.size() > 0) {
+    say_unloaded_pads(still);
     warn_of_short_bearings(job, step.name, still);
     run::warn_of_closed_contacts(job, step, equilibrium_at(linear.Omega()), still);
   }

@@ -83,6 +83,8 @@ class FrequencyStep {
   void finish(const std::string& line);
 
  private:
+  /// Of the equilibrium that the step ended with.
+  void say_unloaded_pads(const system::State& still);
   /// W14, where the step takes the mean of a stiffness that turns.
   void warn_of_mean_stiffness();
   std::string type_, about_, claim_, also_;

@@ -150,6 +150,7 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
     p.spin = c.spin;
     p.pivots = ring.pivots;
     p.pads = ring.standing(node);
+    p.others = ring.other_loads(node);
     p.drawings = ring.faces(node);
     p.full = ring.coefficients(node, 0);
     p.ratios = {1.0};

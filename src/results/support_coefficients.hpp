@@ -17,12 +17,14 @@ struct PadResults {
   double spin = 0;             ///< of the shaft, rad/s
   std::vector<double> pivots;  ///< rad
   std::vector<elements::PadStanding> pads;
+  std::vector<double> others;  ///< N: loads in another balance of the tilt, NaN: there is none
   std::vector<PadDrawing> drawings;
   elements::PadCoefficients full;
   std::vector<double> ratios;  ///< frequencies over the speed; the first is 1
   std::vector<elements::ReducedCoefficients> reduced;  ///< one a ratio
 
-  /// A pad that the journal has left: it carries less than 1e-5 of the largest load.
+  /// N: a pad that carries less has been left by the journal.
+  double least_load() const;
   bool carries(std::size_t pad) const;
 };
 
@@ -103,7 +105,8 @@ struct PadTables {
   bool empty() const { return pads.rows.empty(); }
 };
 PadTables pad_tables(std::span<const SupportCoefficients> list);
-/// Of the pads that carry nothing a line a bearing: "bearing 'DE': pads 1 and 2 carry nothing, ..."
+/// Of the pads that carry nothing a line a bearing: "bearing 'DE': pads 1 and 2 carry nothing, ..."; of
+/// those with two balances a line each.
 std::vector<std::string> unloaded_pads(std::span<const SupportCoefficients> list);
 /// A section through each tilting-pad bearing: journal, pads with their films, pivots and loads.
 std::vector<plot::Figure> draw_pads(const std::string& name,

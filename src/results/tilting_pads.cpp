@@ -97,12 +97,15 @@ plot::Figure draw_section(const std::string& name, const SupportCoefficients& c)
 
 }  // namespace
 
-bool PadResults::carries(std::size_t pad) const {
+double PadResults::least_load() const {
+  constexpr double share = 1e-5;  // of the largest: less is rounding
   double most = 0;
   for (const elements::PadStanding& p : pads)
     most = std::max(most, p.load);
-  return pads[pad].load > 1e-5 * most;
+  return share * most;
 }
+
+bool PadResults::carries(std::size_t pad) const { return pads[pad].load > least_load(); }
 
 PadTables pad_tables(std::span<const SupportCoefficients> list) {
   PadTables out;
@@ -160,6 +163,19 @@ std::vector<std::string> unloaded_pads(std::span<const SupportCoefficients> list
         "practice such pads may flutter)",
         c.name, to_rpm(c.spin), count == 1 ? "" : "s", numbers, count == 1 ? "ies" : "y",
         count == 1 ? "s" : "", count == 1 ? "its" : "their"));
+  }
+  for (const SupportCoefficients& c : list) {
+    if (!c.pads) continue;
+    const auto text = [least = c.pads->least_load()](double load) {
+      return load > least ? fmt::format("{:.4g} N", load) : std::string("nothing");
+    };
+    for (std::size_t k = 0; k < c.pads->pads.size(); ++k)
+      if (!std::isnan(c.pads->others[k]))
+        out.push_back(fmt::format(
+            "bearing '{}' at {:.6g} rpm: pad {} carries {}, and in another balance with the "
+            "journal "
+            "where it is {}: which one it takes depends on how the speed is reached",
+            c.name, to_rpm(c.spin), k + 1, text(c.pads->pads[k].load), text(c.pads->others[k])));
   }
   return out;
 }

@@ -43,8 +43,8 @@ struct SteadyPoint {
   /// [h][probe]: amplitudes of h times the speed; of 0 the mean place against the undeformed shaft,
   /// real. Of a rotor that turns unevenly or breathes.
   std::vector<std::vector<PointAmplitude>> multiple;
-  /// Besides shape, when asked for: what the mean place is off the equilibrium by, and amplitudes of 2, 3
-  /// .. times the speed.
+  /// Besides shape, when asked for: what the mean place is off the equilibrium by, and amplitudes of
+  /// the multiples of the speed from the second on.
   std::vector<VecXc> shape_of_multiples;
   double left_out = 0;  ///< of the last harmonic that was computed, share of the largest
   bool found = true;    ///< false: no periodic motion was; the amplitudes are NaN
