@@ -26,11 +26,21 @@ struct Attached {
   const Location* where;
   std::string label;
   double weight = 0;  ///< kg, of a disk
-  bool held = false;  ///< a rigid support: it decides where the node of a rigid stretch stands
+  int holds = 0;      ///< a rigid support, the more the more motions along lines it holds: it
+                      ///< decides where the node of a rigid stretch stands
 };
 
 std::string named(const char* kind, const model::Entity& e) {
   return e.name.empty() ? std::string(kind) : fmt::format("{} '{}'", kind, e.name);
+}
+
+/// Of two that hold as much the one that holds x goes before: off the node x is held by what holds
+/// the tilts.
+int holds_of(const model::Bearing& x) {
+  const model::SupportTraits traits = model::traits_of(x.law);
+  if (traits.acts != model::Acts::as_constraint || x.to || x.pedestal) return 0;
+  const model::Directions& held = *traits.held;
+  return 1 + 2 * (int{held[0]} + int{held[1]} + int{held[2]}) + int{held[0]};
 }
 
 std::vector<Attached> attachments(const Model& m) {
@@ -46,10 +56,8 @@ std::vector<Attached> attachments(const Model& m) {
     if (x.to) out.push_back({&*x.to, named("crack", x)});
   }
   for (const auto& x : m.bearings) {
-    const bool held =
-        model::traits_of(x.law).acts == model::Acts::as_constraint && !x.to && !x.pedestal;
-    out.push_back({&x.at, named("bearing", x), 0.0, held});
-    if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
+    out.push_back({&x.at, named("bearing", x), 0.0, holds_of(x)});
+    if (x.to) out.push_back({&*x.to, named("bearing", x)});
     if (const model::Location* sensor = model::traits_of(x.law).sensor)
       out.push_back({sensor, named("sensor of bearing", x)});
   }
@@ -229,23 +237,23 @@ class LineMesher {
     return static_cast<Index>(mesh_.nodes.size()) - 1;
   }
 
-  /// Sections k.. that are rigid: one node, at a rigid support if there is one, else at the
-  /// heaviest body, else in the middle.
+  /// Sections k.. that are rigid: one node, at the rigid support that holds most if there is one,
+  /// else at the heaviest body, else in the middle.
   std::size_t rigid_stretch(std::size_t first) {
     std::size_t last = first;
     while (last < shaft_.sections.size() && shaft_.sections[last].rigid)
       ++last;
     const double a = ends_[first], b = ends_[last];
     double where = 0.5 * (a + b), heaviest = 0;
-    bool held = false;
+    int holds = 0;
     for (const Attached* x : attached_) {
       if (x->where->s < a - tolerance_ || x->where->s > b + tolerance_) continue;
       const double s = std::clamp(x->where->s, a, b);
-      if (x->held && !held) {
+      if (x->holds > holds) {
         where = s;
-        held = true;
+        holds = x->holds;
       }
-      if (!held && x->weight > heaviest) {
+      if (holds == 0 && x->weight > heaviest) {
         where = s;
         heaviest = x->weight;
       }

@@ -171,7 +171,7 @@ namespace {
 
 /// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds
 /// the tilts instead: with u held, u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z =
-/// -gamma2 sin g/g = 0.
+/// -gamma2 sin g/g = 0. With both tilts held the stretch moves along x as its node does.
 /// The reaction of a displacement is then the sum of both supports' forces.
 struct HeldNode {
   struct Share {
@@ -181,6 +181,12 @@ struct HeldNode {
   };
   std::array<bool, 6> held{};  // unknowns of the node
   std::shared_ptr<std::vector<Share>> second = std::make_shared<std::vector<Share>>();
+  /// A tilt is what holds a direction off the node.
+  bool tilt_serves(std::size_t unknown) const {
+    return std::any_of(second->begin(), second->end(), [unknown](const Share& x) {
+      return static_cast<std::size_t>(x.unknown) % 6 == unknown;
+    });
+  }
 };
 
 /// Moment of a support that holds rotations of its node; null when it holds none. A held angle is
@@ -238,31 +244,37 @@ struct HeldForces {
 
 /// Holds the unknowns of the node that the support resists: x, y, z, rx, ry, rz in order are u, phi,
 /// gamma2, gamma3. Off the node a lateral direction is held by the tilt.
+/// @pre those at the node have been asked before those off it.
 HeldForces hold_directions(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                            const model::RigidSupport& law, HeldNode& h) {
   const Index node = n.shaft.node;
   const double arm = n.shaft.offset;
   HeldForces out;
-  for (std::size_t c = 0; c < 6; ++c) {
+  const auto no_room = [&](const char* direction) {
+    a.error("E26",
+            fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that "
+                        "leaves no room for holding {} here",
+                        name_of(b), direction),
+            "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no "
+            "third one anything",
+            b, name_of(b));
+  };
+  for (const std::size_t c : {1, 2, 0, 3, 4, 5}) {  // tilts are held before x asks for them
     if (!law.held[c]) continue;
-    if (c >= 3 || arm == 0) {
-      h.held[c] = true;
-      a.builder.hold(node, static_cast<int>(c));
-      if (c < 3) {
-        out.unknown[c] = 6 * node + static_cast<Index>(c);
-        out.first = true;
-      }
+    const std::size_t tilt = c == 1 ? 5 : 4;  // y: gamma3, z: gamma2
+    const bool own = c >= 3 || arm == 0;
+    if (c >= 3 ? h.tilt_serves(c)
+               : !own && (c == 0 ? h.held[0] || !h.held[4] || !h.held[5]
+                                 : !h.held[c] || h.held[tilt])) {
+      constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
+      no_room(names[c]);
       continue;
     }
-    const std::size_t tilt = c == 1 ? 5 : 4;  // y: gamma3, z: gamma2
-    if (c == 0 || !h.held[c] || h.held[tilt]) {
-      a.error("E26",
-              fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that "
-                          "leaves no room for holding {} here",
-                          name_of(b), "xyz"[c]),
-              "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no "
-              "third one anything",
-              b, name_of(b));
+    if (own || c == 0) {
+      h.held[c] = true;
+      a.builder.hold(node, static_cast<int>(c));
+      if (c < 3) out.unknown[c] = 6 * node + static_cast<Index>(c);
+      out.first = out.first || (c < 3 && own);
       continue;
     }
     h.held[tilt] = true;
@@ -274,8 +286,39 @@ HeldForces hold_directions(Assembly& a, const model::Bearing& b, const meshes::B
   return out;
 }
 
+/// What rigid supports hold, of all bearings of a model: what stands off the nodes of rigid
+/// stretches finds them held, in whatever order the deck names them.
+class RigidSupports {
+ public:
+  explicit RigidSupports(Assembly& a) : a_(a), forces_(a.model.bearings.size()) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < forces_.size(); ++i)
+      if (law_of(i) && !a.model.bearings[i].pedestal && nodes(i).other.node < 0) order.push_back(i);
+    const auto rank = [this](std::size_t i) {
+      const model::Directions& held = law_of(i)->held;
+      return nodes(i).shaft.offset == 0 ? 0 : held[1] || held[2] ? 1 : 2;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t i, std::size_t k) { return rank(i) < rank(k); });
+    for (const std::size_t i : order)
+      forces_[i] =
+          hold_directions(a, a.model.bearings[i], nodes(i), *law_of(i), held_[nodes(i).shaft.node]);
+  }
+  HeldNode& at_node(Index node) { return held_[node]; }
+  const HeldForces& forces(std::size_t bearing) const { return forces_[bearing]; }
+
+ private:
+  const model::RigidSupport* law_of(std::size_t i) const {
+    return std::get_if<model::RigidSupport>(&a_.model.bearings[i].law);
+  }
+  const meshes::BearingNodes& nodes(std::size_t i) const { return a_.mesh.bearings[i]; }
+  Assembly& a_;
+  std::map<Index, HeldNode> held_;
+  std::vector<HeldForces> forces_;
+};
+
 void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-               const model::RigidSupport& law, std::map<Index, HeldNode>& held) {
+               const model::RigidSupport& law, RigidSupports& rigid) {
   WHIRL_EXPECTS(n.shaft.node >= 0);
   if (n.other.node >= 0) {
     a.error("E26",
@@ -285,9 +328,9 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
             "use type = \"linear\" with the stiffness of the connection", b, name_of(b));
     return;
   }
-  HeldNode& h = held[n.shaft.node];
+  HeldNode& h = rigid.at_node(n.shaft.node);
   if (b.pedestal) return add_rigid_on_pedestal(a, b, n, law, h);
-  const HeldForces forces = hold_directions(a, b, n, law, h);
+  const HeldForces& forces = rigid.forces(number_of(a, b));
   const auto others = forces.first ? h.second : nullptr;
   a.built.support_forces.push_back(
       {b.name,
@@ -326,7 +369,7 @@ void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNod
 }  // namespace
 
 void add_supports(Assembly& a) {
-  std::map<Index, HeldNode> held;
+  RigidSupports rigid(a);
   a.built.support_terms.resize(a.model.bearings.size());
   for (std::size_t i = 0; i < a.model.bearings.size(); ++i) {
     const model::Bearing& b = a.model.bearings[i];
@@ -348,7 +391,7 @@ void add_supports(Assembly& a) {
         [&](const auto& law) {
           using Law = std::decay_t<decltype(law)>;
           if constexpr (std::is_same_v<Law, model::RigidSupport>)
-            add_rigid(a, b, n, law, held);
+            add_rigid(a, b, n, law, rigid);
           else
             add_law(a, b, n, law);
         },

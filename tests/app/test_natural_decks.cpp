@@ -1181,3 +1181,77 @@ TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {
           EXPECT_EQ(run.csv("st_verdicts.csv").last().at("diverging motions [-]"), 2) << what;
         }
 }
+
+namespace {
+
+/// A rigid stretch of 200 mm in rigid bearings at its ends, its disk off the middle by `arm` mm
+/// towards the end at x = 200 mm; the bearing there holds x too (`locating` = 1), or that at x = 0.
+/// last: that one is named last.
+std::string rigid_stretch(double arm, int locating, bool last) {
+  const auto bearing = [&](int end) {
+    return fmt::format(
+        "[[bearing]]\nname = \"{}\"\nat = \"link:{}\"\ntype = \"rigid\"\ndirections = [{}\"y\", "
+        "\"z\"]\n",
+        "AB"[end], end == 0 ? "start" : "end", end == locating ? "\"x\", " : "");
+  };
+  return fmt::format(R"(format = 1
+[[shaft]]
+name = "s"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["link", 200, true]]
+[[disk]]
+name = "d"
+at = "link:start + {} mm"
+mass = "20 kg"
+Ip = "0.05 kg.m^2"
+Id = "0.03 kg.m^2"
+[[load]]
+at = "d"
+force = ["{} N", "300 N", "0 N"]
+[[unbalance]]
+at = "d"
+amount = "1000 g.mm"
+{}{}[[step]]
+name = "st"
+type = "static"
+[[step]]
+name = "tr"
+type = "transient"
+duration = "20 ms"
+initial_speed = "3000 rpm"
+[output]
+report = false
+quantities = ["bearing_force"]
+)",
+                     100 + arm, locating == 1 ? -50 : 50, bearing(last ? 1 - locating : locating),
+                     bearing(last ? locating : 1 - locating));
+}
+
+}  // namespace
+
+// The bearing that holds x stood at the left end and first in the deck, or was refused (E26). F_y and
+// F_z by the lever rule, F_x = 50 N.
+TEST(NaturalDecks, ARigidStretchIsHeldAlongItsAxisAtEitherEnd) {
+  for (const int locating : {0, 1})
+    for (const bool last : {false, true}) {
+      const DeckRun run(rigid_stretch(locating == 1 ? 30 : -30, locating, last));
+      ASSERT_EQ(run.exit, 0) << run.log;
+      const Columns tr = run.csv("tr.csv");
+      const std::string here = fmt::format("bearing {} force", "AB"[locating]),
+                        there = fmt::format("bearing {} force", "BA"[locating]);
+      const DeckRun first(rigid_stretch(-30, 0, false));
+      const Columns left = first.csv("tr.csv");
+      ASSERT_EQ(left.rows.size(), tr.rows.size());
+      const auto a = tr.last(), b = left.last();
+      const double sign = locating == 1 ? -1 : 1;
+      EXPECT_NEAR(a.at(here + ".x [N]"), -50 * sign, 1e-6);
+      for (const char* along : {".x [N]", ".y [N]", ".z [N]"}) {
+        const double s = along[1] == 'x' ? sign : 1;
+        EXPECT_NEAR(a.at(here + along), s * b.at(std::string("bearing A force") + along), 1e-6)
+            << along;
+        EXPECT_NEAR(a.at(there + along), s * b.at(std::string("bearing B force") + along), 1e-6)
+            << along;
+      }
+    }
+}
