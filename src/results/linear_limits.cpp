@@ -242,6 +242,7 @@ void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double freq
   if (amplitudes.empty()) return;
   look_at_tilts(Omega, amplitudes, frequency);
   look_at_forces(Omega, amplitudes, frequency);
+  look_at_currents(Omega, amplitudes, frequency);
   const std::vector<std::size_t> seals = seals_of(job.model);
   const std::vector<assembly::SupportCondition>& conditions = job.built.conditions;
   if (conditions.empty() && seals.empty()) return;
@@ -307,67 +308,72 @@ void GapCheck::look_at_tilts(double Omega, std::span<const VecXc> amplitudes, do
   }
 }
 
-void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency) {
-  const std::vector<assembly::SupportForce>& supports = step_.job.built.support_forces;
-  const system::System& sys = step_.job.system();
-  bends_.resize(supports.size());
-  // how far a force leaves its linear part grows with the motion
+bool GapCheck::goes_further(std::span<const VecXc> amplitudes) {
+  const std::vector<meshes::BearingNodes>& bearings = step_.job.mesh.bearings;
+  ways_.resize(bearings.size());
   bool further = false;
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    const Index n = step_.job.mesh.bearings[i].shaft.node;
-    double way = 0, tilt = 0;
-    for (const VecXc& a : amplitudes) {
-      way += a.segment<3>(6 * n).norm();
-      tilt += a.segment<3>(6 * n + 3).norm();
-    }
-    further = further || way > 1.01 * bends_[i].way || tilt > 1.01 * bends_[i].tilt;
-    bends_[i].way = std::max(bends_[i].way, way);
-    bends_[i].tilt = std::max(bends_[i].tilt, tilt);
+  for (std::size_t i = 0; i < bearings.size(); ++i) {
+    Way now;
+    for (const Index n : {bearings[i].shaft.node, bearings[i].other.node})
+      for (const VecXc& a : amplitudes) {
+        if (n < 0) continue;
+        now.along += a.segment<3>(6 * n).norm();
+        now.tilt += a.segment<3>(6 * n + 3).norm();
+      }
+    Way& before = ways_[i];
+    further = further || now.along > 1.01 * before.along || now.tilt > 1.01 * before.tilt;
+    before.along = std::max(before.along, now.along);
+    before.tilt = std::max(before.tilt, now.tilt);
   }
-  if (!further) return;
+  return further;
+}
+
+void GapCheck::look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency) {
+  // how far a force leaves its linear part grows with the motion
+  if (!goes_further(amplitudes)) return;
   step_.linear.move_to(Omega);
-  const system::State& still = step_.linear.equilibrium().state;
-  system::Workspace w = sys.make_workspace();
-  w.context.averaged = step_.linear.running().running().mean;
-  w.context.time = still.t;
-  const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
-  const auto reaction = [](Index) { return 0.0; };
-  const auto forces_at = [&](const VecX& q) {
-    std::vector<Vec3> out(supports.size(), Vec3::Constant(nan));
-    if (!sys.evaluate_nodes(w, still.frames, still.t, q, still.v, still.a)) return out;
-    for (std::size_t i = 0; i < supports.size(); ++i)
-      out[i] = supports[i].force(node, w.context, reaction);
-    return out;
-  };
-  constexpr int looks = 6;  // of half a period; the other half by the sign
-  constexpr double small = 1e-3;
-  const std::vector<Vec3> rest = forces_at(still.q);
-  std::vector<Bend> now;
-  now.reserve(rest.size());
-  for (const Vec3& force : rest)
-    now.push_back({.still = force.norm(), .speed = Omega, .frequency = frequency});
+  SupportBends supports(step_.job, step_.linear.equilibrium().state,
+                        step_.linear.running().running().mean);
+  VecX cosine = VecX::Zero(amplitudes.front().size()), sine = cosine;
+  for (const VecXc& a : amplitudes) {
+    cosine += a.real();
+    sine -= a.imag();
+  }
+  const SupportBends::Loads by_cosine = supports.linear_along(cosine),
+                            by_sine = supports.linear_along(sine);
+  constexpr int looks = 24;  // a period: the extreme is met to 1 %
   for (int k = 0; k < looks; ++k) {
-    VecX way = VecX::Zero(still.q.size());
-    for (const VecXc& a : amplitudes)
-      way += (a * std::polar(1.0, pi * k / looks)).real();
-    const std::vector<Vec3> there = forces_at(still.q + way), other = forces_at(still.q - way),
-                            on = forces_at(still.q + small * way),
-                            back = forces_at(still.q - small * way);
-    for (std::size_t i = 0; i < supports.size(); ++i) {
-      const Vec3 linear = (on[i] - back[i]) / (2 * small);
-      if (!linear.allFinite() || !there[i].allFinite() || !other[i].allFinite()) continue;
-      now[i].linear = std::max(now[i].linear, linear.norm());
-      now[i].off = std::max(
-          {now[i].off, (there[i] - rest[i] - linear).norm(), (other[i] - rest[i] + linear).norm()});
+    const double c = std::cos(two_pi * k / looks), s = std::sin(two_pi * k / looks);
+    supports.look(c * cosine + s * sine, c * by_cosine + s * by_sine);
+  }
+  most_.take(supports.bends(), longest_line(step_.job));
+  bent_.resize(supports.bends().size());
+  for (std::size_t i = 0; i < bent_.size(); ++i) {
+    const SupportBend& now = supports.bends()[i];
+    if (now.beyond(bent_[i].bend)) bent_[i] = {now, Omega, frequency};
+  }
+}
+
+void GapCheck::look_at_currents(double Omega, std::span<const VecXc> amplitudes, double frequency) {
+  const std::vector<assembly::MagneticControl>& controls = step_.job.built.magnetic_controls;
+  if (controls.empty()) return;
+  if (currents_.empty()) currents_ = current_needs(step_.job);
+  step_.linear.move_to(Omega);
+  const VecX& still = step_.linear.equilibrium().state.q;
+  const std::span<const double> orders = step_.linear.running().orders();
+  const double place = static_cast<double>(places_.size());
+  places_.emplace_back(Omega, frequency);
+  for (std::size_t i = 0; i < controls.size(); ++i)
+    for (const Index node : controls[i].currents) {
+      double current = std::abs(still[6 * node]), rate = 0;
+      for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+        const double w = std::isnan(frequency) ? orders[k] * Omega : frequency;
+        current += std::abs(amplitudes[k][6 * node]);
+        rate += std::abs(w * amplitudes[k][6 * node]);
+      }
+      const double unit = controls[i].current_unit;
+      currents_[i].take(unit * current, unit * rate, place);
     }
-  }
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    most_linear_ = std::max(most_linear_, now[i].linear);
-    if (!(now[i].share() > bends_[i].share())) continue;
-    now[i].way = bends_[i].way;
-    now[i].tilt = bends_[i].tilt;
-    bends_[i] = now[i];
-  }
 }
 
 namespace {
@@ -396,37 +402,53 @@ void GapCheck::report_tilt() {
   warn(step_.job, std::move(d));
 }
 
+bool GapCheck::is_named(std::size_t bearing) const {
+  const auto worst = worst_.find(step_.job.model.bearings[bearing].name);
+  const bool by_gap = worst != worst_.end() &&
+                      (worst->second.film || worst->second.displacement > worst->second.gap);
+  return by_gap || std::any_of(currents_.begin(), currents_.end(), [&](const CurrentNeed& x) {
+           return x.bearing == bearing && x.beyond_current();
+         });
+}
+
 void GapCheck::report_forces() {
-  constexpr double straight = 0.3;
-  for (std::size_t i = 0; i < bends_.size(); ++i) {
-    const Bend& x = bends_[i];
-    const assembly::SupportForce& support = step_.job.built.support_forces[i];
-    const auto worst = worst_.find(support.name);
-    const bool named = worst != worst_.end() &&
-                       (worst->second.film || worst->second.displacement > worst->second.gap);
-    // what hardly acts misleads nobody, nor does rounding of what stands still
-    if (named || x.share() <= straight || x.off <= 1e-3 * most_linear_ || x.off <= 1e-8 * x.still)
-      continue;
+  for (std::size_t i = 0; i < bent_.size(); ++i) {
+    const Bent& x = bent_[i];
+    if (!most_.misled_by(x.bend) || is_named(i)) continue;
+    const model::Bearing& b = step_.job.model.bearings[i];
     Diagnostic d;
     d.code = "W11";
     d.message = fmt::format(
-        "step '{}': {} the response takes '{}' so far that its force leaves its linear part by "
-        "{:.2g} of it: a linear response does not know it",
-        step_.step.name, place_of(x.speed, x.frequency), support.name, x.share());
-    d.hint =
-        "play that opens, a spring that stiffens or a magnet that saturates: a transient step "
-        "meets it as it is";
-    const auto& all = step_.job.model.bearings;
-    const auto of = std::find_if(all.begin(), all.end(),
-                                 [&](const model::Bearing& b) { return b.name == support.name; });
-    if (of != all.end()) d.where = of->where;
+        "step '{}': {} the response takes {}: a linear response does not know it", step_.step.name,
+        place_of(x.speed, x.frequency), text_of(x.bend, most_, b.name));
+    d.hint = fmt::format("{}a transient step meets it as it is", of_bends);
+    d.where = b.where;
     warn(step_.job, std::move(d));
   }
+}
+
+void GapCheck::report_currents() {
+  for (const CurrentNeed& x : currents_)
+    for (const bool of_rate : {false, true}) {
+      if (of_rate ? !x.beyond_rate() : !x.beyond_current()) continue;
+      const model::Bearing& b = step_.job.model.bearings[x.bearing];
+      const auto& [speed, frequency] =
+          places_[static_cast<std::size_t>(of_rate ? x.rate_at : x.current_at)];
+      Diagnostic d;
+      d.code = "W11";
+      d.message =
+          fmt::format("step '{}': {} the response needs {}: a linear response does not know it",
+                      step_.step.name, place_of(speed, frequency), text_of(x, of_rate, b.name));
+      d.hint = "a transient step meets the amplifier as it is";
+      d.where = b.where;
+      warn(step_.job, std::move(d));
+    }
 }
 
 void GapCheck::report(const std::string& of) {
   report_tilt();
   report_forces();
+  report_currents();
   std::vector<UsedGap> used;
   for (const auto& [name, x] : worst_) {
     if (!(x.gap > 0)) continue;

@@ -3,6 +3,7 @@
 // Each is said once a step, with place and size (W11, W12, W13, W16, W03). Motions in time: limits_output.cpp.
 #pragma once
 #include <results/frequency.hpp>
+#include <results/support_bends.hpp>
 #include <map>
 #include <span>
 #include <string>
@@ -20,9 +21,11 @@ class GapCheck {
   /// rad/s.
   void look(double Omega, std::span<const VecXc> amplitudes, double frequency = nan);
   /// W11 for every gap that a response oversteps, for tilts that are not small, for every film of
-  /// which it takes so much that coefficients of small motions mislead, and for every other support
-  /// whose force leaves its linear part (play that opens, magnets that saturate); all shares into the
-  /// summary ("gaps"), and as a clearance diagram into the report. of: "response to unbalance".
+  /// which it takes so much that coefficients of small motions mislead, for every other support
+  /// whose force or moment leaves its linear part (play that closes or opens, magnets that
+  /// saturate), and for every amplifier that gives less than the currents of the response; all
+  /// shares into the summary ("gaps"), and as a clearance diagram into the report. of: "response to
+  /// unbalance".
   void report(const std::string& of);
 
  private:
@@ -44,22 +47,31 @@ class GapCheck {
   void look_at(const Worst& seen, const std::string& name, double at_rest);
   void look_at_tilts(double Omega, std::span<const VecXc> amplitudes, double frequency);
   void report_tilt();
-  /// How far the force of a support leaves its linear part on the way of a response.
-  struct Bend {
-    double off = 0, linear = 0;  ///< N, the largest over a period
-    double still = 0;            ///< N, at rest
-    double way = 0, tilt = 0;    ///< m, rad: the largest of its place so far
+  /// Where a support leaves its linear part furthest.
+  struct Bent {
+    SupportBend bend;
     double speed = 0, frequency = nan;
-    double share() const { return linear > 0 ? off / linear : 0.0; }
   };
+  /// How far the place of a support has come, m and rad.
+  struct Way {
+    double along = 0, tilt = 0;
+  };
+  /// Where the response goes further than before.
+  bool goes_further(std::span<const VecXc> amplitudes);
   void look_at_forces(double Omega, std::span<const VecXc> amplitudes, double frequency);
   void report_forces();
+  void look_at_currents(double Omega, std::span<const VecXc> amplitudes, double frequency);
+  void report_currents();
+  bool is_named(std::size_t bearing) const;
   FrequencyStep& step_;
   std::vector<double> reach_;  ///< of every station, m
   std::map<std::string, Worst> worst_;
   Tilt tilt_;
-  std::vector<Bend> bends_;  ///< of the supports
-  double most_linear_ = 0;   ///< N, of all of them
+  std::vector<Way> ways_;   ///< of the supports
+  std::vector<Bent> bent_;  ///< of the supports
+  MostLinear most_;
+  std::vector<CurrentNeed> currents_;              ///< of the magnetic bearings
+  std::vector<std::pair<double, double>> places_;  ///< speed and frequency, by number of the look
 };
 
 /// Where the tables that are not held beyond their edges begin: reference speed, rad/s, and what to

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 using namespace whirl;
+using whirl::test::Columns;
 using whirl::test::DeckRun;
 namespace io = whirl::io;
 
@@ -569,4 +570,140 @@ TEST(LinearLimits, ACoupledTubeThatIsAlikeAllAroundHasNoMean) {
   const DeckRun stiff(tube(500, 0, modal)), heavy(tube(0, 5e-5, modal));
   EXPECT_TRUE(stiff.says("the stiffness of the asymmetric rotor")) << stiff.log;
   EXPECT_TRUE(heavy.says("the inertia of the asymmetric rotor")) << heavy.log;
+}
+
+namespace {
+
+/// 20 kg on 2e6 N/m and 300 N s/m, shaken by 3000 g mm at 1500 and 3000 rpm.
+std::string shaken(const std::string& parts) {
+  return whirl::test::lateral_mass(20, "0 m/s^2", R"([[bearing]]
+name = "B"
+at = "mass"
+type = "linear"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+[[unbalance]]
+at = "mass"
+amount = "3000 g.mm"
+[output]
+report = false
+)" + parts);
+}
+/// Its amplitude in m with 2e6 N/m, as k - m w^2 + i c w has it.
+double shaken_at_3000_rpm() {
+  const double w = 100 * pi;
+  return 3e-3 * w * w / std::hypot(2e6 - 20 * w * w, 300 * w);
+}
+constexpr const char* two_speeds =
+    "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"1500 rpm\", "
+    "\"3000 rpm\"] }\n";
+std::string open_stop(const char* gap, const char* shape = "clearance",
+                      const char* direction = "y") {
+  return fmt::format(
+      "[[bearing]]\nname = \"stop\"\nat = \"mass\"\ntype = \"nonlinear_spring\"\ndirection = "
+      "\"{}\"\nshape = \"{}\"\ngap = \"{}\"\nstiffness = \"1e8 N/m\"\n",
+      direction, shape, gap);
+}
+/// The number behind a text of the log; NaN: it is not there.
+double number_behind(const DeckRun& run, const std::string& text) {
+  const std::size_t at = run.log.find(text);
+  return at == std::string::npos ? std::nan("") : std::stod(run.log.substr(at + text.size()));
+}
+
+}  // namespace
+
+// A stop 100 um away knows nothing of a small motion, and its share of nothing was nothing.
+TEST(LinearLimits, PlayThatIsOpenAtRestIsNoticed) {
+  const double force = 1e8 * (shaken_at_3000_rpm() - 100e-6);
+  for (const char* direction : {"y", "z", "radial"})
+    for (const char* shape : {"clearance", "one_sided"}) {
+      if (std::string(shape) == "one_sided" && std::string(direction) == "radial") continue;
+      const DeckRun run(shaken(open_stop("100 um", shape, direction) + two_speeds));
+      ASSERT_EQ(run.exit, 0) << run.log;
+      EXPECT_TRUE(run.says("W11")) << run.log;
+      EXPECT_NEAR(number_behind(run, "takes 'stop' into contact, where it would press with "),
+                  force, 0.012 * force)
+          << direction << shape << run.log;
+    }
+  EXPECT_FALSE(DeckRun(shaken(open_stop("50 mm") + two_speeds)).says("W11"));
+}
+
+TEST(LinearLimits, PlayOfRollingBearingsAndTablesIsNoticed) {
+  const auto bearing = [](const std::string& law) {
+    return "[[bearing]]\nname = \"X\"\nat = \"mass\"\n" + law + two_speeds;
+  };
+  const std::string balls =
+      "type = \"ball\"\nballs = 9\nball_diameter = \"10 mm\"\npitch_diameter = \"50 "
+      "mm\"\nc_radial = \"200 N.s/m\"\nclearance = ";
+  const std::string band =
+      "type = \"nonlinear_spring\"\ndirection = \"y\"\nshape = \"table\"\ninterpolation = "
+      "\"linear\"\ncolumns = [\"deflection[mm]\", \"force[N]\"]\nrows = [[-1, -5e4], [-0.1, 0], "
+      "[0.1, 0], [1, 5e4]]\n";
+  for (const std::string& law : {balls + "\"30 um\"\n", band}) {
+    const DeckRun run(shaken(bearing(law)));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_TRUE(run.says("takes 'X' into contact")) << run.log;
+  }
+  EXPECT_FALSE(DeckRun(shaken(bearing(balls + "\"20 mm\"\n"))).says("W11"));
+}
+
+// Unbalances of a couple: M = 2 m_u (50 mm) w^2 against (Id - Ip) w^2 and a stiffness of 1e5 N m/rad.
+TEST(LinearLimits, AStopAgainstTiltIsNoticed) {
+  const auto deck = [](const char* gap) {
+    return whirl::test::lateral_mass(
+        20, "0 m/s^2",
+        fmt::format("[[bearing]]\nat = \"mass\"\ntype = \"linear\"\nkrr = \"1e5 "
+                    "N.m/rad\"\ncrr = \"1 N.m.s/rad\"\n[[bearing]]\nname = \"stop\"\nat = "
+                    "\"mass\"\ntype = \"nonlinear_angular_spring\"\ndirection = \"ry\"\nshape = "
+                    "\"clearance\"\ngap = \"{}\"\nstiffness = \"1e7 N.m/rad\"\n[[unbalance]]\nat "
+                    "= \"left:mid\"\namount = \"3000 g.mm\"\n[[unbalance]]\nat = "
+                    "\"right:mid\"\namount = \"3000 g.mm\"\nphase = \"180 deg\"\n[[probe]]\nat = "
+                    "\"left:start\"\n[output]\nreport "
+                    "= false\n{}",
+                    gap, two_speeds),
+        R"("x", "y", "z")");
+  };
+  const DeckRun run(deck("0.001 deg"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const double w = 100 * pi, gap = 0.001 * pi / 180,
+               tilt = 2 * 3e-3 * 0.05 * w * w / std::hypot(1e5 - (0.06 - 0.1) * w * w, w),
+               moment = 1e7 * (tilt - gap);
+  EXPECT_NEAR(number_behind(run, "takes 'stop' into contact, where it would turn back with "),
+              moment, 0.012 * moment)
+      << run.log;
+  EXPECT_FALSE(DeckRun(deck("5 deg")).says("W11"));
+}
+
+// The amplitude r of the response asks for |p + i w d/(1 + i w lag)| r/|1 + i w/(amplifier)| of
+// current, and w times that of its rate.
+TEST(LinearLimits, WhatAnAmplifierDoesNotGiveIsNoticed) {
+  const auto magnet = [](const std::string& limits) {
+    return "[[bearing]]\nname = \"m\"\nat = \"mass\"\ntype = \"magnetic\"\ncurrent_stiffness "
+           "= \"200 N/A\"\nposition_stiffness = \"1e5 N/m\"\namplifier_bandwidth = \"2000 "
+           "Hz\"\ncontrol = [{ type = \"pid\", p = \"20000 A/m\", d = \"30 A.s/m\", lag = "
+           "\"150 us\" }]\n" +
+           limits + "[[probe]]\nname = \"p\"\nat = \"mass\"\n";
+  };
+  const DeckRun run(
+      shaken(magnet("max_current_rate = \"150 A/s\"\nmax_current = \"0.5 A\"\n") + two_speeds));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns response = run.csv("u_response.csv");
+  const Complex iw(0, 100 * pi);
+  const double r = response.last().at("p y amplitude [m]"),
+               current = std::abs((2e4 + 30.0 * iw / (1.0 + iw * 150e-6)) /
+                                  (1.0 + iw / (two_pi * 2000))) *
+                         r;
+  EXPECT_NEAR(number_behind(run, "the response needs "), current, 1e-3 * current) << run.log;
+  EXPECT_TRUE(run.says("whose amplifier gives 0.5 A:")) << run.log;
+  EXPECT_TRUE(run.says("whose amplifier gives 150 A/s:")) << run.log;
+  EXPECT_FALSE(DeckRun(shaken(magnet("max_current_rate = \"5e4 A/s\"\nmax_current = \"90 A\"\n") +
+                              two_speeds))
+                   .says("W11"));
+  const std::string slow = magnet("max_current_rate = \"150 A/s\"\n");
+  const DeckRun rate(shaken(slow + two_speeds));
+  EXPECT_NEAR(number_behind(rate, "the response needs "), 100 * pi * current,
+              1e-3 * 100 * pi * current)
+      << rate.log;
 }
