@@ -14,6 +14,10 @@
 #include <string>
 #include <vector>
 
+namespace whirl::analysis {
+class LinearMotion;
+}
+
 namespace whirl::results {
 
 /// What outputs are made from; what it refers to outlives them.
@@ -25,6 +29,7 @@ struct TransientSetup {
   const time::Options& integration;  ///< end time and breakpoints, s
   double t_begin = 0;                ///< where the step began, s: of a resumed one too
   bool resumed = false;
+  const analysis::LinearMotion* motion = nullptr;  ///< of a linear step; else null
 };
 
 /// A transient that has ended, and where it is shown.

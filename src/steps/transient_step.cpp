@@ -299,7 +299,8 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
   if (beginning_of(job, step, law) == Beginning::in_motion) begin_as_it_turns();
   warn_of_start();
   outputs_ = results::make_transient_outputs(
-      {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value()});
+      {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value(),
+       dynamic_cast<const analysis::LinearMotion*>(problem_.get())});
   for (const auto& output : outputs_)
     output->attach(observers_, parts_);
   add_own_parts();

@@ -599,6 +599,14 @@ double shaken_at_3000_rpm() {
 constexpr const char* two_speeds =
     "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"1500 rpm\", "
     "\"3000 rpm\"] }\n";
+/// linear = true: small motions.
+std::string in_time(const char* keys) {
+  return std::string(
+             "[[drive]]\nat = \"mass\"\ntype = \"speed\"\nspeed = \"3000 rpm\"\nstep = \"t\"\n"
+             "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"0.2 s\"\nstart = "
+             "\"unbalance_response\"\n") +
+         keys;
+}
 std::string open_stop(const char* gap, const char* shape = "clearance",
                       const char* direction = "y") {
   return fmt::format(
@@ -676,6 +684,26 @@ TEST(LinearLimits, AStopAgainstTiltIsNoticed) {
   EXPECT_FALSE(DeckRun(deck("5 deg")).says("W11"));
 }
 
+// The same in time: the motion begins with that response.
+TEST(LinearLimits, ALinearTransientNoticesWhatBends) {
+  const double a = shaken_at_3000_rpm(), force = 1e8 * (a - 100e-6);
+  const DeckRun run(shaken(open_stop("100 um") + in_time("linear = true\n")));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("step 't': at t = ")) << run.log;
+  EXPECT_NEAR(
+      number_behind(run, "the motion takes 'stop' into contact, where it would press with "), force,
+      0.03 * force)
+      << run.log;
+  const std::string cubic =
+      "[[bearing]]\nname = \"stop\"\nat = \"mass\"\ntype = \"nonlinear_spring\"\ndirection = "
+      "\"z\"\nshape = \"polynomial\"\ncoefficients = [\"0 N\", \"1e4 N/m\", \"0 N/m^2\", \"1e11 "
+      "N/m^3\"]\n";
+  EXPECT_TRUE(DeckRun(shaken(cubic + in_time("linear = true\n"))).says("the motion takes 'stop'"));
+  for (const std::string& deck : {open_stop("50 mm") + in_time("linear = true\n"),
+                                  open_stop("100 um") + in_time("linear = false\n")})
+    EXPECT_FALSE(DeckRun(shaken(deck)).says("W11"));
+}
+
 // The amplitude r of the response asks for |p + i w d/(1 + i w lag)| r/|1 + i w/(amplifier)| of
 // current, and w times that of its rate.
 TEST(LinearLimits, WhatAnAmplifierDoesNotGiveIsNoticed) {
@@ -702,8 +730,11 @@ TEST(LinearLimits, WhatAnAmplifierDoesNotGiveIsNoticed) {
                               two_speeds))
                    .says("W11"));
   const std::string slow = magnet("max_current_rate = \"150 A/s\"\n");
-  const DeckRun rate(shaken(slow + two_speeds));
+  const DeckRun rate(shaken(slow + two_speeds)), small(shaken(slow + in_time("linear = true\n")));
   EXPECT_NEAR(number_behind(rate, "the response needs "), 100 * pi * current,
               1e-3 * 100 * pi * current)
       << rate.log;
+  EXPECT_NEAR(number_behind(small, "the motion needs "), 100 * pi * current,
+              0.02 * 100 * pi * current)
+      << small.log;
 }

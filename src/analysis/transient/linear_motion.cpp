@@ -389,10 +389,16 @@ void LinearMotion::find_series() {
   series_.holds = true;
 }
 
-void LinearMotion::place_steady(double t, VecX& q) const {
+void LinearMotion::steady(double t, VecX& q) const {
   q = q0_;
   for (Index i = 0; i < system().nodes(); ++i)
     if (turns_[at(i)]) q[6 * i + system::spin_phi] += turned(system().node(i).line, t);
+}
+
+Vector<6> LinearMotion::beside(double t, const VecX& q, Index node) const {
+  Vector<6> x = q.segment<6>(6 * node) - q0_.segment<6>(6 * node);
+  if (turns_[at(node)]) x[system::spin_phi] -= turned(system().node(node).line, t);
+  return x;
 }
 
 bool LinearMotion::steady_residual(double t, time::Ref r) {
@@ -403,7 +409,7 @@ bool LinearMotion::steady_residual(double t, time::Ref r) {
       add_series(series_.entry, series_.cosine, series_.sine, turned(series_.line, t), r);
     return true;
   }
-  place_steady(t, q_);
+  steady(t, q_);
   if (!system().residual(steady_, frames, t, q_, v0_, still_, r, &changing_)) return false;
   r += constant_;
   return true;
@@ -457,7 +463,7 @@ bool LinearMotion::bound_along(const time::FreeMotion& m) {
 void LinearMotion::multiply(double t, time::CRef q, time::CRef v, time::Bound& bound,
                             time::StepProducts& step) {
   WHIRL_EXPECTS(series_.holds && q.size() == q0_.size() && v.size() == q0_.size());
-  place_steady(t, q_);
+  steady(t, q_);
   q_ = q - q_;
   v_ = v - v0_;
   la::multiply(matrices(), {q_, v_, step.stiff_of, step.inertia_of, step.filter_of, step.shift,
@@ -471,7 +477,7 @@ bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r
   // rates
   for (std::size_t i = 0; i < m.time.size(); ++i)
     if (!steady_residual(m.time[i], r.col(static_cast<Index>(i)))) return false;
-  place_steady(m.t, q_);
+  steady(m.t, q_);
   q_ = m.q - q_;
   v_ = m.v - v0_;
   take_bound_forces();
@@ -484,7 +490,7 @@ bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r
 
 bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
   if (!steady_residual(t, r)) return false;
-  place_steady(t, q_);
+  steady(t, q_);
   if (!joined_.empty()) {
     steady_q_ = q_;
     steady_v_ = v0_;

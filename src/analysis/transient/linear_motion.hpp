@@ -57,6 +57,12 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
   Power exchange_here(time::CRef v, time::CRef reactions) override;
   bool power_needs_reactions() const override { return true; }
 
+  /// q of the steady motion at t, its rates.
+  void steady(double t, VecX& q) const;
+  const VecX& steady_rates() const { return v0_; }
+  /// Of a node, what q has beside the steady motion at t.
+  Vector<6> beside(double t, const VecX& q, Index node) const;
+
   /// The steady motion, for checkpoints.
   void save(OutArchive& out) const {
     out.put(q0_);
@@ -98,7 +104,6 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
   double turned(Index line, double t) const {
     return (angle_[line] - two_pi * frames.turns[at(line)]) + rate_[at(line)] * t;
   }
-  void place_steady(double t, VecX& q) const;
   /// at_first_ := C v_ + K q_. A scheme asks at the end of a step and at the start of the next.
   void take_bound_forces();
   /// What is held by a law goes on at the rates of the state.
