@@ -36,7 +36,7 @@ const char* left_out_motion(const model::StepLaw& law) {
       law);
 }
 
-/// Loads and unbalances with a law of time, in steps that have none.
+/// Loads, unbalances and motions of the base with a law of time, in steps that have none.
 void add_what_changes(const model::Model& m, std::vector<std::string>& out) {
   const auto say = [&out](const char* what, const std::string& name, const LawPtr& factor) {
     if (factor)
@@ -48,6 +48,16 @@ void add_what_changes(const model::Model& m, std::vector<std::string>& out) {
     say("load", x.name, x.factor);
   for (const model::Unbalance& x : m.unbalances)
     say("unbalance", x.name, x.factor);
+  const auto say_base = [&out](const std::string& what, const LawPtr& law, double unit,
+                               const char* named) {
+    if (varies(law))
+      out.push_back(
+          fmt::format("{} of the base at its value at t = 0, {:.4g} {}: the step has no time", what,
+                      law->at(0.0).f / unit, named));
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    say_base(fmt::format("acceleration along {}", "xyz"[k]), m.base.acceleration[k], 1.0, "m/s^2");
+  if (m.base.turn) say_base("turning", m.base.turn->rate, pi / 180.0, "deg/s");
 }
 
 }  // namespace

@@ -1255,3 +1255,18 @@ TEST(NaturalDecks, ARigidStretchIsHeldAlongItsAxisAtEitherEnd) {
       }
     }
 }
+
+TEST(NaturalDecks, MotionOfTheBaseIsTakenAtItsBeginningWithoutTime) {
+  const std::string base =
+      "[base]\ny = { type = \"harmonic\", mean = \"1 m/s^2\", amplitude = \"2 m/s^2\", frequency = "
+      "\"20 Hz\" }\nz = \"3 m/s^2\"\n";
+  const DeckRun run(rotor(linear("a:start",
+                                 "kxx = \"1e7 N/m\"\nkyy = \"1e7 N/m\"\nkzz = \"1e7 "
+                                 "N/m\"\n") +
+                              linear("b:end", "kyy = \"1e7 N/m\"\nkzz = \"1e7 N/m\"\n"),
+                          base + "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("acceleration along y of the base at its value at t = 0, 3 m/s^2"))
+      << run.log;
+  EXPECT_FALSE(run.says("acceleration along z")) << run.log;
+}

@@ -7,7 +7,7 @@ void describe(Visitor& v, model::BaseMotion& b) {
   static constexpr const char* keys[] = {"x", "y", "z"};
   static constexpr const char* docs[] = {
       ("acceleration of the base along the shaft, constant or a law of time; displacements are "
-       "relative to the base"),
+       "relative to the base; steps without time take the value at t = 0, as for the keys below"),
       "acceleration across, horizontally", "acceleration upwards"};
   for (std::size_t k = 0; k < 3; ++k)
     describe_law(v, optional(keys[k], "0"), b.acceleration[k], "m/s^2", docs[k]);
@@ -22,7 +22,8 @@ void describe(Visitor& v, model::BaseTurn& t) {
            "any length");
   v.vector(optional("about", "[0, 0, 0]"), t.about, "m",
            "a point of the axis; far away for a curve");
-  describe_law(v, required("rate"), t.rate, "deg/s", "angular speed, constant or a law of time");
+  describe_law(v, required("rate"), t.rate, "deg/s",
+               "angular speed, constant or a law of time; steps without time take it at t = 0");
   if (!v.clean()) return;
   if (!(t.axis.norm() > 0))
     v.error("E14", "axis", "the axis of turning has no direction",
