@@ -111,7 +111,14 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
   s.section.text = modes.empty()
                        ? "The model has no torsional mode: no inertia twists against another."
                        : fmt::format("{} torsional modes.", modes.size());
-  s.finish(fmt::format("{} torsional modes, {} critical speeds", modes.size(), marks.size()));
+  const auto unstable = std::count_if(modes.begin(), modes.end(),
+                                      [](const analysis::WhirlMode& m) { return m.growth() > 0; });
+  if (unstable > 0) {
+    s.summary()["unstable modes"] = static_cast<int>(unstable);
+    s.section.text += fmt::format(" {} of them unstable.", unstable);
+  }
+  s.finish(fmt::format("{} torsional modes{}, {} critical speeds", modes.size(),
+                       unstable > 0 ? fmt::format(" ({} unstable)", unstable) : "", marks.size()));
 }
 
 }  // namespace whirl::steps

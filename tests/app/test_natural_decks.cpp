@@ -1270,3 +1270,27 @@ TEST(NaturalDecks, MotionOfTheBaseIsTakenAtItsBeginningWithoutTime) {
       << run.log;
   EXPECT_FALSE(run.says("acceleration along z")) << run.log;
 }
+
+// 1 and 2 kg m2 on a shaft, driven on the branch of an induction motor's torque that rises with the
+// speed: k' > 0 at the one disc makes both twist ever more.
+TEST(NaturalDecks, TorsionalModesThatGrowAreCounted) {
+  const auto line = [](const char* from) {
+    const DeckRun run(
+        std::string("format = 1\n[output]\nreport = false\n[[shaft]]\nname = "
+                    "\"s\"\nmaterial = \"steel\"\ncolumns = [\"name\", "
+                    "\"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 500, 40]]\n") +
+        "[[disk]]\nat = \"a:start\"\nmass = \"20 kg\"\nIp = \"1 kg.m^2\"\nId = \"0.6 "
+        "kg.m^2\"\n[[disk]]\nat = \"a:end\"\nmass = \"20 kg\"\nIp = \"2 kg.m^2\"\nId "
+        "= \"1.2 kg.m^2\"\n" +
+        linear("a:start", "kxx = \"1e7 N/m\"\nkyy = \"1e7 N/m\"\nkzz = \"1e7 N/m\"\n") +
+        linear("a:end", "kyy = \"1e7 N/m\"\nkzz = \"1e7 N/m\"\n") +
+        "[[drive]]\nat = \"a:start\"\ntype = \"torque\"\ninduction = { breakdown = "
+        "\"500 N.m\", slip_breakdown = 0.1, synchronous = \"1500 rpm\" }\n[[step]]\nname "
+        "= \"t\"\ntype = \"torsional\"\nmodes = 1\nmax_speed = \"" +
+        from + "\"\n");
+    EXPECT_EQ(run.exit, 0) << run.log;
+    return run.says("1 torsional modes (1 unstable)");
+  };
+  EXPECT_TRUE(line("1200 rpm"));
+  EXPECT_FALSE(line("1450 rpm"));
+}
