@@ -291,6 +291,12 @@ void TorquesOutput::summarize(TransientEnd& end) {
   if (watch_.counts()) v["damage"] = *std::max_element(keep.damage.begin(), keep.damage.end());
 }
 
+/// A cycle that reaches the strength is the last one: without end is what the damage is, no number
+/// that is missing.
+io::Table::Cell damage_cell(double x) {
+  return std::isinf(x) ? io::Table::Cell("inf") : io::Table::Cell(x);
+}
+
 io::Table TorquesOutput::table() const {
   io::Table t;
   t.title = "Torques in shafts and couplings";
@@ -326,7 +332,7 @@ void TorquesOutput::add_row(io::Table& t, std::vector<io::Table::Cell> part, con
     part.emplace_back(x);
   if (law_.yield > 0) part.emplace_back(100 * stress / law_.yield);
   if (watch_.counts()) {
-    part.emplace_back(known ? used : nan);
+    part.push_back(damage_cell(known ? used : nan));
     part.emplace_back(known && used > 0 ? 1.0 / used : nan);
   }
   t.add(std::move(part));
@@ -347,7 +353,7 @@ io::Table TorquesOutput::classes(std::size_t element) const {
     const auto i = static_cast<std::size_t>(k);
     if (c.count[i] == 0) continue;
     t.add({k == 0 ? 0.0 : 1e-6 * CycleClasses::lower(k, endurance),
-           1e-6 * CycleClasses::lower(k + 1, endurance), c.count[i], c.damage[i]});
+           1e-6 * CycleClasses::lower(k + 1, endurance), c.count[i], damage_cell(c.damage[i])});
   }
   return t;
 }

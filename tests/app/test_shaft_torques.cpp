@@ -157,6 +157,18 @@ TEST(ShaftTorques, OfABarThatRings) {
   EXPECT_NEAR(summary.at("damage").number(), damage, 1e-4 * damage);
 }
 
+// A part that breaks in one cycle has used up its life without end: nothing is missing there.
+TEST(ShaftTorques, OfABarThatBreaks) {
+  const DeckRun d(rings(1.5,
+                        "concentration = 1.5\nultimate = \"10 MPa\"\nendurance = \"2 MPa\"\n"
+                        "thousand = \"5 MPa\"\ncycles = 1e5\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("not finite")) << d.log;
+  const auto row = d.csv("ring_torques.csv").last();
+  EXPECT_TRUE(std::isinf(row.at("damage [-]")));
+  EXPECT_EQ(row.at("times [-]"), 0);
+}
+
 // Steps of an eighth of a period: the nearest of 32 looks a period is 0.03 N m off.
 TEST(ShaftTorques, ExtremesLieBetweenTheLooks) {
   const DeckRun d(rings(3.2, "yield = \"10 MPa\"\n", "", "3.1 ms"));
