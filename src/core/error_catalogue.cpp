@@ -547,9 +547,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "larger than the clearance of a bearing or "
        "the gap of a stop, the machine does something else: it touches, or its film stiffens. In a "
        "film coefficients of small motions mislead from about a third of what is left of the "
-       "clearance on. So it does where a play opens, a spring stiffens or a magnet saturates, such "
-       "that a force leaves its linear part by more than 30 %. The message says where, at which "
-       "speed, and by how much.",
+       "clearance on. So it does where a play closes or opens, a spring stiffens or a magnet "
+       "saturates, such that a force or a moment leaves its linear part by more than 30 %, and "
+       "where the amplifier of a magnetic bearing does not give the current, or its rate, that the "
+       "motion needs. The message says where, at which speed or time, and by how much.",
        "[[step]]\ntype = \"transient\""},
       {"W12", "a table of a bearing is held beyond its end",
        "The step turns a shaft faster or slower than the table of its bearing covers, and the "
