@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <regex>
 
 namespace whirl::sweep {
 namespace {
@@ -131,14 +132,46 @@ std::string text_of(const SweepOptions& o, const model::Model& model) {
   return io::to_json(v);
 }
 
-std::vector<std::filesystem::path> shard_folders(const std::filesystem::path& root) {
+/// Folders that a sweep has named, in the order of their names. Links lead elsewhere.
+std::vector<std::filesystem::path> folders_named(const std::filesystem::path& root,
+                                                 const std::regex& name) {
   std::vector<std::filesystem::path> out;
   std::error_code ec;
   for (const auto& entry : std::filesystem::directory_iterator(root, ec))
-    if (entry.is_directory() && entry.path().filename().string().starts_with("shard_"))
+    if (entry.is_directory() && !entry.is_symlink() &&
+        std::regex_match(entry.path().filename().string(), name))
       out.push_back(entry.path());
   std::sort(out.begin(), out.end());
   return out;
+}
+
+std::vector<std::filesystem::path> shard_folders(const std::filesystem::path& root) {
+  static const std::regex name("shard_[0-9]+_of_[0-9]+");
+  return folders_named(root, name);
+}
+
+/// The rows of a shard, and what its workers left.
+void remove_rows(const std::filesystem::path& shard) {
+  static const std::regex worker("worker_[0-9]+_[0-9]+");
+  std::error_code ec;
+  std::filesystem::remove(shard / "rows.tsv", ec);
+  for (const auto& folder : folders_named(shard, worker))
+    std::filesystem::remove_all(folder, ec);
+}
+
+/// All of them are held before the first goes.
+void remove_other_shards(const std::filesystem::path& root, const std::filesystem::path& own) {
+  std::vector<std::filesystem::path> others = shard_folders(root);
+  std::erase(others, own);
+  std::vector<std::unique_ptr<run::RunLock>> held;
+  for (const auto& folder : others)
+    held.push_back(std::make_unique<run::RunLock>(folder));
+  for (const auto& folder : others)
+    remove_rows(folder);
+  held.clear();
+  std::error_code ec;
+  for (const auto& folder : others)
+    std::filesystem::remove(folder, ec);  // where nothing else stands in it
 }
 
 }  // namespace
@@ -206,7 +239,7 @@ Plan make_plan(const SweepOptions& o, const model::Model& model) {
   return plan;
 }
 
-void prepare_folder(const Plan& plan, bool resume) {
+std::unique_ptr<run::RunLock> prepare_folder(const Plan& plan, bool resume) {
   const auto file = plan.root / "plan.json";
   std::error_code ec;
   const bool there = std::filesystem::exists(file, ec);
@@ -216,15 +249,16 @@ void prepare_folder(const Plan& plan, bool resume) {
         fmt::format("{} holds another sweep", plan.root.string()),
         "the deck, the keys varied or the program have changed: take another --output, or "
         "remove the folder");
-  if (plan.shard.count > 1) {
-    if (!resume) std::filesystem::remove_all(plan.root / plan.shard.folder(), ec);
-  } else if (!resume) {
-    for (const auto& folder : shard_folders(plan.root))
-      std::filesystem::remove_all(folder, ec);
+  const auto own = plan.root / plan.shard.folder();
+  if (std::filesystem::is_symlink(own, ec))
+    io::io_failure(own, "nothing is written through a symbolic link:");
+  auto lock = std::make_unique<run::RunLock>(own);
+  if (!resume) {
+    if (plan.shard.count == 1) remove_other_shards(plan.root, own);
+    remove_rows(own);
   }
-  std::filesystem::create_directories(plan.root / plan.shard.folder(), ec);
-  if (ec) io::io_failure(plan.root, "cannot make the folder", ec.value());
   if (!same) io::write_atomic(file, plan.text);
+  return lock;
 }
 
 std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64_t, Row>& rows) {
@@ -243,6 +277,16 @@ std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64
 }
 
 std::string worst_folder(std::int64_t run) { return fmt::format("worst/run_{:06}", run); }
+
+void remove_worst_runs(const Plan& plan) {
+  static const std::regex run("run_[0-9]+");
+  const auto worst = plan.root / "worst";
+  std::error_code ec;
+  if (std::filesystem::is_symlink(worst, ec)) return;
+  for (const auto& folder : folders_named(worst, run))
+    if (std::filesystem::exists(folder / "run.json", ec)) std::filesystem::remove_all(folder, ec);
+  std::filesystem::remove(worst, ec);
+}
 
 std::map<std::int64_t, Row> all_rows(const Plan& plan) {
   std::map<std::int64_t, Row> out;

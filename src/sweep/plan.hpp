@@ -4,8 +4,10 @@
 #include <sweep/rows.hpp>
 #include <sweep/sweep.hpp>
 #include <model/model.hpp>
+#include <run/run_lock.hpp>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,15 +49,19 @@ struct Plan {
 /// @throws Error (E99, Exit::usage)
 Plan make_plan(const SweepOptions& options, const model::Model& model);
 
-/// Makes the folder ready. Rows of an earlier sweep go, unless they are of this plan and it is
-/// resumed or one of several shards.
-/// @throws Error (E99, Exit::usage) when the folder holds another plan that others may still be at
-void prepare_folder(const Plan& plan, bool resume);
+/// Makes the folder ready and holds it. Rows of an earlier sweep go, unless they are of this plan and
+/// it is resumed or one of several shards; nothing goes that a sweep has not written, and nothing of a
+/// sweep that is still running.
+/// @throws Error (E99, Exit::usage) when the folder holds another plan that others may still be at;
+/// (E97, Exit::io) when another process is at this shard, or at one that would go.
+std::unique_ptr<run::RunLock> prepare_folder(const Plan& plan, bool resume);
 
 /// Numbers of the worst runs in the order of their badness, each once; ties by their number.
 std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64_t, Row>& rows);
 /// Below the sweep's folder.
 std::string worst_folder(std::int64_t run);
+/// Takes the worst runs of an earlier sweep away.
+void remove_worst_runs(const Plan& plan);
 
 /// The rows of all shards.
 std::map<std::int64_t, Row> all_rows(const Plan& plan);

@@ -57,7 +57,10 @@ class Runner {
     const fs::path results = folder_of(run, worker);
     io::set_waiting_for_disk(options_.keep);
     try {
-      empty(results);  // tables of the run before must not be taken for this one's
+      if (fs::is_symlink(results))
+        io::io_failure(results, "nothing is written through a symbolic link:");
+      // tables of the run before must not be taken for this one's; of a run's own folder the run knows
+      if (!options_.keep) empty(results);
       row.exit = steps_of(run, results);
       for (const Response& r : plan_.responses)
         row.answers.push_back(answer(r, results));
@@ -264,8 +267,7 @@ void run_worst(const SweepOptions& options, const Plan& plan,
                const std::map<std::int64_t, Row>& rows) {
   const std::vector<std::int64_t> runs = worst_runs(plan, rows);
   if (runs.empty()) return;
-  std::error_code ec;
-  fs::remove_all(plan.root / "worst", ec);
+  remove_worst_runs(plan);
   const Runner runner(options, plan);
   WorkerOptions w;
   w.processes = static_cast<int>(
@@ -375,11 +377,10 @@ namespace {
 
 /// Everything but the runs themselves, by the one process that keeps the rows.
 int lead(const SweepOptions& options, const Plan& plan, std::unique_ptr<Ranks> ranks) {
-  std::optional<run::RunLock> lock;
+  std::unique_ptr<run::RunLock> lock;
   try {
     require_keys(options, plan);
-    prepare_folder(plan, options.run.resume);
-    lock.emplace(plan.root / plan.shard.folder());
+    lock = prepare_folder(plan, options.run.resume);
   } catch (...) {
     if (ranks) ranks->agree(false);
     throw;

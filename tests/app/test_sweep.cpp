@@ -5,6 +5,9 @@
 #include <core/plugin.hpp>
 #include <io/results.hpp>
 
+#include <fcntl.h>
+#include <sys/file.h>
+
 namespace fs = std::filesystem;
 
 namespace whirl::test {
@@ -264,6 +267,57 @@ TEST_F(Sweep, NumbersInHdf5AreThoseOfTheTable) {
   for (const char* name : {"run", "disk.disk.mass", "first", "peak", "exit"})
     EXPECT_EQ(binary[name], text[name]) << name;
   EXPECT_EQ(binary.rows(), 12u);
+}
+
+// Another sweep is at the folder: it keeps its rows, and this one does not begin.
+TEST_F(Sweep, AFolderThatIsSweptIsLeftAlone) {
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o s") + asked), 0) << log_;
+  const std::string rows = read("s/shard_1_of_1/rows.tsv");
+  ASSERT_FALSE(rows.empty());
+  const std::string lock = (folder_ / "s/shard_1_of_1/.whirl.lock").string();
+  const int other = ::open(lock.c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_GE(other, 0);
+  ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
+  EXPECT_EQ(whirl("sweep d.toml -o s --vary disk.disk.mass=1kg:2kg:2 --response "
+                  "first=c_undamped:speed:1"),
+            5)
+      << log_;
+  EXPECT_NE(log_.find("E97"), std::string::npos) << log_;
+  EXPECT_EQ(read("s/shard_1_of_1/rows.tsv"), rows);
+  // nor one of all runs, which would take the shards away
+  fs::create_directories(folder_ / "s/shard_2_of_3");
+  EXPECT_EQ(whirl("sweep d.toml -o s --shard 1/3" + std::string(asked)), 0) << log_;
+  ::close(other);
+  const std::string second = (folder_ / "s/shard_1_of_3/.whirl.lock").string();
+  const int shard = ::open(second.c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_EQ(::flock(shard, LOCK_EX | LOCK_NB), 0);
+  EXPECT_EQ(whirl(std::string("sweep d.toml -o s") + asked), 5) << log_;
+  EXPECT_TRUE(fs::exists(folder_ / "s/shard_1_of_3/rows.tsv"));
+  ::close(shard);
+}
+
+// Nothing goes, and nothing is written, that is not the sweep's own.
+TEST_F(Sweep, TheUsersFilesStay) {
+  const std::vector<std::string> own{"s/shard_holder/notes.txt", "s/worst/notes.txt",
+                                     "s/worst/run_about.txt", "s/runs/000000/notes.txt"};
+  for (const std::string& file : own) {
+    fs::create_directories((folder_ / file).parent_path());
+    std::ofstream(folder_ / file) << "mine";
+  }
+  fs::create_directories(folder_ / "elsewhere");
+  std::ofstream(folder_ / "elsewhere/notes.txt") << "mine";
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "s/runs/000001");
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_EQ(whirl("sweep d.toml -o s --keep --worst first:1 --vary disk.disk.mass=1kg:2kg:3 "
+                    "--response first=c_undamped:speed:1"),
+              0)
+        << log_;
+    for (const std::string& file : own)
+      EXPECT_EQ(read(file), "mine") << file;
+    EXPECT_EQ(read("elsewhere/notes.txt"), "mine");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "elsewhere"), {}), 1);
+  }
+  EXPECT_NE(log_.find("symbolic link"), std::string::npos) << log_;
 }
 
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
