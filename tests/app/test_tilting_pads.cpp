@@ -1,9 +1,11 @@
-// Tilting-pad bearings through the program: case L4, keys, pads by themselves, messages, motion.
+// Tilting-pad bearings through the program: case L4, keys, pads by themselves, messages, motion, and
+// the compressor of example 28 with its pads in full and reduced to tables.
 #include "deck_run.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <complex>
 
 namespace {
 
@@ -45,6 +47,8 @@ force = ["0 N", "0 N", ")" +
          load + "\"]\n" + end("DE", "a:start") + end("NDE", "b:end") + steps +
          "[output]\nreport = false\n";
 }
+const std::filesystem::path compressor_folder =
+    std::filesystem::path(WHIRL_SOURCE) / "examples" / "28_tilting_pads";
 const std::string still =
     "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"94.2477796 rad/s\"\n";
 
@@ -233,6 +237,121 @@ TEST(TiltingPads, TableOverSpeeds) {
     }
     EXPECT_EQ(d.csv("st_pads.csv").rows.size(), 200u);
   }
+}
+
+namespace {
+
+/// A deck of example 28 without its steps.
+std::string compressor(const char* deck) {
+  std::ostringstream text;
+  text << std::ifstream(compressor_folder / deck).rdbuf();
+  const std::string all = text.str();
+  return all.substr(0, all.find("[[step]]"));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+    text.replace(at, from.size(), to);
+    at += to.size();
+    ++found;
+  }
+  EXPECT_GT(found, 0u) << from;
+  return text;
+}
+
+/// The first mode of a list that whirls forward.
+std::map<std::string, double> first_forward(const Columns& modes) {
+  for (const auto& row : modes.rows) {
+    const auto m = modes.named(row);
+    if (m.at("forwardness [-]") > 0) return m;
+  }
+  throw std::runtime_error("no forward mode");
+}
+
+const std::string modes_at_rated =
+    "[[step]]\nname = \"modes\"\ntype = \"modal\"\nspeed = \"9000 rpm\"\nmodes = 8\n"
+    "motion = \"lateral\"\n";
+
+}  // namespace
+
+// Example 28: its table is what deck.toml writes. What turns with the spin, the unbalance response, is
+// that of the pads in full to the table's interpolation; what whirls below it is not.
+TEST(TiltingPads, ReducedCoefficientsHoldForWhatTurnsWithTheSpin) {
+  const DeckRun full(compressor("deck.toml") + R"([[step]]
+name = "films"
+type = "static"
+speeds = { start = "3000 rpm", stop = "12000 rpm", points = 19 }
+[[step]]
+name = "unbalance"
+type = "unbalance_response"
+speed = { start = "3000 rpm", stop = "12000 rpm", points = 91, refine = "peaks" }
+)" + modes_at_rated + "[output]\nreport = false\n");
+  ASSERT_EQ(full.exit, 0) << full.log;
+  const DeckRun reduced(compressor_folder / "tables.toml");
+  ASSERT_EQ(reduced.exit, 0) << reduced.log;
+
+  const Columns table(compressor_folder / "pads.csv"), films = full.csv("films_coefficients.csv");
+  ASSERT_EQ(films.rows.size(), 2 * table.rows.size());
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const auto& made = films.rows[2 * k];
+    EXPECT_NEAR(table.rows[k][0], made[films.column("speed [rpm]")], 1e-6);
+    for (const std::string part : {"k", "c"})
+      for (const char* e : {"yy", "yz", "zy", "zz"}) {
+        const std::string unit = part == "k" ? "N/m" : "N.s/m";
+        EXPECT_NEAR(table.rows[k][table.column(part + e + "[" + unit + "]")],
+                    made[films.column(part + e + (part == "k" ? " [N/m]" : " [N s/m]"))],
+                    1e-6 * made[films.column(part == "k" ? "kzz [N/m]" : "czz [N s/m]")])
+            << part << e << " at " << table.rows[k][0];
+      }
+  }
+
+  const Columns a = full.csv("unbalance_response.csv"), b = reduced.csv("unbalance_response.csv");
+  std::size_t compared = 0;
+  for (const char* name : {"mid span y", "mid span z"}) {
+    const auto motion = [&](const Columns& c, const std::vector<double>& row) {
+      return std::polar(row[c.column(name + std::string(" amplitude [m]"))],
+                        -M_PI / 180 * row[c.column(name + std::string(" phase lag [deg]"))]);
+    };
+    double largest = 0, worst = 0;
+    for (const auto& row : a.rows)
+      for (const auto& other : b.rows) {
+        if (std::abs(row[0] - other[0]) > 1e-6) continue;
+        ++compared;
+        largest = std::max(largest, std::abs(motion(a, row)));
+        worst = std::max(worst, std::abs(motion(a, row) - motion(b, other)));
+      }
+    EXPECT_LT(worst, 1e-4 * largest) << name;
+  }
+  EXPECT_GE(compared, 2u * 91u);
+  const auto peak = full.csv("unbalance_peaks.csv").last(),
+             same = reduced.csv("unbalance_peaks.csv").last();
+  EXPECT_NEAR(peak.at("amplitude [m]"), 9.774e-6, 1e-9);
+  EXPECT_NEAR(same.at("amplitude [m]"), peak.at("amplitude [m]"), 6e-5 * peak.at("amplitude [m]"));
+  EXPECT_NEAR(same.at("speed [rpm]"), peak.at("speed [rpm]"), 6e-5 * peak.at("speed [rpm]"));
+
+  const auto whirl = first_forward(full.csv("modes_modes.csv")),
+             promised = first_forward(reduced.csv("modes_modes.csv"));
+  EXPECT_NEAR(whirl.at("frequency [Hz]"), 95.53, 0.1);
+  EXPECT_NEAR(promised.at("frequency [Hz]"), 99.15, 0.1);
+  EXPECT_NEAR(whirl.at("log decrement [-]"), 0.835, 0.01 * 0.835);
+  EXPECT_NEAR(promised.at("log decrement [-]"), 1.517, 0.01 * 1.517);
+}
+
+// Cross coupling of 26.4 MN/m makes the pads' rotor unstable; the table holds it stable to 38.9.
+TEST(TiltingPads, ReducedCoefficientsPromiseAStableRotor) {
+  const auto decrement = [](const char* deck, const char* k) {
+    std::string text = replaced(compressor(deck), "k = \"4e6 N/m\"", fmt::format("k = \"{}\"", k));
+    if (deck == std::string("tables.toml"))
+      text = replaced(text, "\"pads.csv\"", '"' + (compressor_folder / "pads.csv").string() + '"');
+    const DeckRun d(text + modes_at_rated + "[output]\nreport = false\n");
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return first_forward(d.csv("modes_modes.csv")).at("log decrement [-]");
+  };
+  EXPECT_GT(decrement("deck.toml", "26.2 MN/m"), 0);
+  EXPECT_LT(decrement("deck.toml", "26.6 MN/m"), 0);
+  EXPECT_GT(decrement("tables.toml", "38.7 MN/m"), 0);
+  EXPECT_LT(decrement("tables.toml", "39.1 MN/m"), 0);
 }
 
 TEST(TiltingPads, BadInput) {
