@@ -354,6 +354,46 @@ TEST(TiltingPads, ReducedCoefficientsPromiseAStableRotor) {
   EXPECT_LT(decrement("tables.toml", "39.1 MN/m"), 0);
 }
 
+// A transient on the films that are the default (cavitation = "reynolds") settles in the orbit of the
+// unbalance response, small against the film: radii and phases, by the Fourier sum over the last turn.
+TEST(TiltingPads, MotionSettlesInTheOrbitOfItsResponse) {
+  const DeckRun d(replaced(compressor("deck.toml"), "\"900 g.mm\"", "\"90 g.mm\"") + R"([[drive]]
+name = "motor"
+at = "de:start"
+type = "speed"
+speed = "4000 rpm"
+[[step]]
+name = "t"
+type = "transient"
+start = "static"
+duration = "0.3 s"
+integrator = { tolerance = 1e-5 }
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["4000 rpm"] }
+[output]
+report = false
+every = "1 ms"
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  const auto response = d.csv("u_response.csv").last();
+  constexpr std::size_t rows_a_turn = 15;
+  ASSERT_GT(t.rows.size(), rows_a_turn);
+  for (const std::string axis : {"y", "z"}) {
+    std::complex<double> sum = 0;
+    for (std::size_t k = t.rows.size() - rows_a_turn; k < t.rows.size(); ++k)
+      sum += t.rows[k][t.column("mid span." + axis + " [m]")] *
+             std::polar(1.0, -t.rows[k][t.column("phi [rad]")]);
+    const double radius = response.at("mid span " + axis + " amplitude [m]");
+    const auto expected =
+        std::polar(radius, -M_PI / 180 * response.at("mid span " + axis + " phase lag [deg]"));
+    EXPECT_GT(radius, 2e-7);
+    EXPECT_LT(std::abs(2.0 / rows_a_turn * sum - expected), 1e-4 * radius) << axis;
+  }
+}
+
 TEST(TiltingPads, BadInput) {
   const auto fails = [](std::string bearing, const char* code, const char* text,
                         const char* load = "-225629.814 N") {
