@@ -164,6 +164,7 @@ void remove_other_shards(const std::filesystem::path& root, const std::filesyste
   std::vector<std::filesystem::path> others = shard_folders(root);
   std::erase(others, own);
   std::vector<std::unique_ptr<run::RunLock>> held;
+  held.reserve(others.size());
   for (const auto& folder : others)
     held.push_back(std::make_unique<run::RunLock>(folder));
   for (const auto& folder : others)
