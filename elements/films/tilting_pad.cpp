@@ -128,6 +128,7 @@ Vec2 TiltingPad::touching_tilts(const LateralMotion& m) const {
 
 double TiltingPad::settled_tilt(const LateralMotion& m) const {
   const Vec2 ends = touching_tilts(m);
+  if (!ends.allFinite()) return nan;
   const auto moment = [&](double tilt) { return righting_moment(m, tilt); };
   if (!(moment(ends[0]) < 0.0) || !(moment(ends[1]) > 0.0)) return nan;
   const double size = film.surface->pad_clearance() / arm;
@@ -135,7 +136,7 @@ double TiltingPad::settled_tilt(const LateralMotion& m) const {
 }
 
 std::vector<double> TiltingPad::balances(const LateralMotion& m) const {
-  constexpr int looks = 160;
+  constexpr int looks = 160;  // two balances nearer than that carry the same to a percent
   const Vec2 ends = touching_tilts(m);
   std::vector<double> out;
   if (!ends.allFinite()) return out;

@@ -72,8 +72,8 @@ struct TiltingPads {
   std::function<std::vector<Face>(const NodeAt&)> faces;
   /// points: of the grid on the circumference, 0: that of the bearing.
   std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
-  /// N, one a pad: what it would carry in another stable balance of its tilt, journal and pivot where
-  /// they are; NaN: there is none.
+  /// N, one a pad that carries little: what it would carry in another stable balance of its tilt,
+  /// journal and pivot where they are; NaN: there is none, or it carries much in one of them.
   std::function<std::vector<double>(const NodeAt&)> other_loads;
 };
 

@@ -119,18 +119,25 @@ class PadRing {
     return out;
   }
   std::vector<double> other_loads(const NodeAt& at) const {
-    constexpr double apart = 1e-3;  // of a radian of the pad's clearance
-    std::vector<double> out;
+    constexpr double apart = 1e-3;   // of the tilt at which the pad's clearance is gone
+    constexpr double little = 0.05;  // of the largest load: with more the journal would not stay
+    const std::vector<elements::PadStanding> now = standing(at);
+    double most = 0.0;
+    for (const elements::PadStanding& pad : now)
+      most = std::max(most, pad.load);
+    std::vector<double> out(pads(), nan);
     for (std::size_t k = 0; k < pads(); ++k) {
+      if (now[k].load > little * most) continue;
       const elements::TiltingPad& pad = pads_[k];
       const auto m = kernel(k).motion_of(states(k, at), {});
       elements::LateralMotion pressed = m.journal;
       pressed.r -= m.q.y() * pad.pivot;
-      double other = nan;
-      for (const double tilt : pad.balances(pressed))
-        if (std::abs(tilt - m.q.x()) > apart * pad.film.surface->pad_clearance() / pad.arm)
-          other = pad.standing(m.journal, Vec2(tilt, m.q.y())).load;
-      out.push_back(other);
+      const double size = pad.film.surface->pad_clearance() / pad.arm;
+      for (const double tilt : pad.balances(pressed)) {
+        if (std::abs(tilt - m.q.x()) <= apart * size) continue;
+        const double load = pad.standing(m.journal, Vec2(tilt, m.q.y())).load;
+        if (load <= little * most) out[k] = load;
+      }
     }
     return out;
   }

@@ -166,18 +166,11 @@ std::vector<std::string> unloaded_pads(std::span<const SupportCoefficients> list
   }
   for (const SupportCoefficients& c : list) {
     if (!c.pads) continue;
-    // the journal stays where it is only where little depends on the pad
-    constexpr double little = 0.05;  // of the largest load
-    double most = 0.0;
-    for (const elements::PadStanding& pad : c.pads->pads)
-      most = std::max(most, pad.load);
-    const auto matters = [&](double load) { return load > little * most; };
     const auto text = [least = c.pads->least_load()](double load) {
       return load > least ? fmt::format("{:.4g} N", load) : std::string("nothing");
     };
     for (std::size_t k = 0; k < c.pads->pads.size(); ++k)
-      if (!std::isnan(c.pads->others[k]) && !matters(c.pads->pads[k].load) &&
-          !matters(c.pads->others[k]))
+      if (!std::isnan(c.pads->others[k]))
         out.push_back(fmt::format(
             "bearing '{}' at {:.6g} rpm: pad {} carries {}, and in another balance with the "
             "journal "

@@ -469,6 +469,7 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
   options.shapes = true;
   analysis::UnbalanceSolver solver(s.linear, options);
   results::GapCheck gaps(s);
+  // what the mean place is off by counts to either side
   const auto look = [&](const SteadyPoint& x) {
     std::vector<VecXc> all = x.shape;
     all.insert(all.end(), x.shape_of_multiples.begin(), x.shape_of_multiples.end());

@@ -127,6 +127,27 @@ TEST(TiltingPads, FivePadsLoadOnPad) {
 }
 
 // A list of pads, one by one, is the equal ones; bearing and load turned by 90 deg.
+// Which pads carry nothing is said by every step that has an equilibrium, and where a pad that carries
+// little has another balance.
+TEST(TiltingPads, PadsThatCarryNothingAreNamedByEveryStep) {
+  const DeckRun d(
+      rotor(five_pads + on_pad, still + "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 2\n"
+                                        "speed = \"94.2477796 rad/s\"\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("m: bearing 'DE' at 900 rpm: pads 1, 2 carry nothing")) << d.log;
+  EXPECT_EQ(d.summary("m").at("unloaded pads").items().size(), 2u);
+  std::string leaning = rotor(five_pads + on_pad, still);
+  const std::string straight = "\"0 N\", \"0 N\", \"-225629.814 N\"";
+  leaning.replace(leaning.find(straight), straight.size(),
+                  "\"0 N\", \"41117.767721 N\", \"-221851.621908 N\"");
+  const DeckRun two(leaning);
+  ASSERT_EQ(two.exit, 0) << two.log;
+  EXPECT_TRUE(
+      two.says("pad 1 carries nothing, and in another balance with the journal where it is"))
+      << two.log;
+  EXPECT_FALSE(two.says("pad 5 carries")) << two.log;
+}
+
 TEST(TiltingPads, PadsByThemselvesAndTurned) {
   std::string list = "arc = \"60 deg\"\n";
   for (int k = 0; k < 5; ++k)

@@ -218,6 +218,37 @@ TEST(TiltingPad, FivePadsLoadOnPad) {
   }
 }
 
+// A lightly loaded pad of the same bearing has two stable balances where the load leans by 10.5 degrees:
+// the pad rests, or carries 0.5 % of the load (1177 N by finite volumes with complementarity).
+TEST(TiltingPad, BalancesAreStableAndAllThereAre) {
+  const Ring b = five_pads();
+  const double lean = 10.5 * degree;
+  const Vec2 load = W * Vec2(std::sin(lean), -std::cos(lean));
+  const Vec2 r = b.equilibrium(load, Vec2(0, -0.4 * cb));
+  std::size_t most = 0;
+  for (const TiltingPad& pad : b.pads) {
+    const LateralMotion m = b.at(r);
+    const auto righting = [&](double tilt) {
+      return -pad.standing(m, Vec2(tilt, 0)).force.dot(pad.direction(0)) +
+             pad.tilt_stiffness * tilt;
+    };
+    const std::vector<double> tilts = pad.balances(m);
+    most = std::max(most, tilts.size());
+    const double size = pad.film.surface->pad_clearance() / pad.arm;
+    for (const double tilt : tilts) {
+      EXPECT_LT(righting(tilt - 1e-4 * size), 0.0);
+      EXPECT_GT(righting(tilt + 1e-4 * size), 0.0);
+    }
+    const double settled = pad.settled_tilt(m);
+    EXPECT_TRUE(std::any_of(tilts.begin(), tilts.end(),
+                            [&](double tilt) { return std::abs(tilt - settled) < 1e-6 * size; }));
+  }
+  EXPECT_EQ(most, 2u);
+  const LateralMotion outside = b.at(10 * cb * b.pads.front().pivot);
+  EXPECT_TRUE(b.pads.front().balances(outside).empty());
+  EXPECT_TRUE(std::isnan(b.pads.front().settled_tilt(outside)));
+}
+
 // The axial profile against two dimensions, on pads at work: journals towards the pivot and tilts
 // that put the resultant through it, from short to square and longer pads. Worst 0.7 % of the load.
 TEST(TiltingPad, AgainstTwoDimensionalReynolds) {
