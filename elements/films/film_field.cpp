@@ -37,6 +37,7 @@ class PadInState {
       f.theta.push_back(theta);
       f.thickness.push_back(thickness(theta));
       f.pressure.push_back(unit * profile.pressure[i]);
+      f.middle.push_back(film_.peak * f.pressure.back());
       f.slope.push_back(unit * profile.slope[i]);
       f.viscosity.push_back(viscosity(offset[i]));
       const int wet = film_at(offset[i]);
@@ -171,8 +172,77 @@ FiniteJournal alone(const FiniteJournal& film, std::size_t k) {
       std::clamp(static_cast<int>(std::lround(arc.points)), 8, JournalSurface::max_nodes);
   const std::vector<JournalPad> stretch{{arc.start, arc.start + arc.length, thinnest}};
   one.surface = std::make_shared<JournalSurface>(clearance, preload, stretch, points);
+  if (film.grid) one.grid = std::make_shared<const std::vector<GridPad>>(1, (*film.grid)[k]);
   if (film.kept_from >= 0) one.kept_from += static_cast<std::ptrdiff_t>(k) * film.kept_each();
   return one;
+}
+
+/// A row of numbers at places in ascending order, between them linear.
+double between(const std::vector<double>& places, const std::vector<double>& values, double at) {
+  const auto next = std::upper_bound(places.begin(), places.end(), at);
+  if (next == places.begin()) return values.front();
+  if (next == places.end()) return values.back();
+  const std::size_t k = static_cast<std::size_t>(next - places.begin());
+  const double share = (at - places[k - 1]) / (places[k] - places[k - 1]);
+  return values[k - 1] + share * (values[k] - values[k - 1]);
+}
+
+FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
+                      std::size_t samples) {
+  const JournalSurface::Arc& arc = film.surface->arcs()[pad];
+  const FiniteJournal::Gap gap = film.gap(pad, p);
+  const GridDrive drive = film.drive(pad, p);
+  GridField g = (*film.grid)[pad].field(drive);
+  // the pressure at the ends is known
+  if (!arc.round)
+    for (auto* values : {&g.mean, &g.middle}) {
+      values->insert(values->begin(), drive.edge);
+      values->push_back(drive.edge);
+    }
+  std::vector<double> places = g.place;
+  if (!arc.round) {
+    places.insert(places.begin(), 0.0);
+    places.push_back(arc.length);
+  }
+  const double unit = film.pressure_unit(gap);
+  FilmField f;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double at = arc.length * static_cast<double>(i) / static_cast<double>(samples - 1);
+    const std::size_t column = std::min(
+        static_cast<std::size_t>(std::upper_bound(g.face_place.begin(), g.face_place.end(), at) -
+                                 g.face_place.begin()) -
+            1,
+        g.place.size() - 1);
+    const double step = 1e-3 * arc.length, low = std::max(0.0, at - step),
+                 high = std::min(arc.length, at + step);
+    const double thickness = between(g.place, g.thickness, at);
+    f.theta.push_back(arc.start + at);
+    f.thickness.push_back(gap.pad * thickness);
+    f.pressure.push_back(unit * between(places, g.mean, at));
+    f.middle.push_back(unit * between(places, g.middle, at));
+    f.slope.push_back(unit * (between(places, g.mean, high) - between(places, g.mean, low)) /
+                      (high - low));
+    f.viscosity.push_back(film.viscosity);
+    f.flow.push_back(film.length * film.radius * between(g.face_place, g.flow, at));
+    f.wet.push_back(g.wet[column]);
+  }
+  return f;
+}
+
+/// Flows and the thinnest film of a pad on its grid.
+void stand_on_grid(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
+                   FilmStanding& s) {
+  const JournalSurface::Arc& arc = film.surface->arcs()[pad];
+  const GridField g = (*film.grid)[pad].field(film.drive(pad, p));
+  const double unit = film.length * film.radius;
+  const bool forward = p.slip >= 0.0;
+  s.thinnest = film.gap(pad, p).pad * g.thinnest;
+  s.thinnest_at = arc.start + g.thinnest_at;
+  s.highest = film.pressure_unit(film.gap(pad, p)) * g.highest;
+  s.highest_at = arc.start + g.highest_at;
+  s.inflow = unit * (forward ? g.flow.front() : -g.flow.back());
+  s.outflow = unit * (forward ? g.flow.back() : -g.flow.front());
+  s.side_flow = unit * g.side;
 }
 
 }  // namespace
@@ -181,22 +251,15 @@ FilmField sample_film(const FiniteJournal& film, std::size_t pad, const FilmPoin
                       std::size_t samples) {
   WHIRL_EXPECTS(samples >= 3);
   WHIRL_EXPECTS(film.inside(p));
+  if (film.grid) return sample_grid(film, pad, p, samples);
   return PadInState(film, pad, p).field(samples);
 }
 
-FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
-                           double density) {
-  WHIRL_EXPECTS(film.inside(p));
-  constexpr std::size_t samples = 121;
-  PadInState in(film, pad, p);
-  const FilmField f = in.field(samples);
-  FilmStanding s;
-  FilmForce force;
-  alone(film, pad).evaluate(p, force);
-  s.force = -force.F;
-  s.power = force.pump - (force.F.dot(p.w) + force.T * p.slip);
+namespace {
+
+/// Flows and the thinnest film of a pad with a profile along the axis.
+void stand_on_profile(PadInState& in, bool forward, FilmStanding& s) {
   s.thinnest = in.smallest(s.thinnest_at);
-  const bool forward = p.slip >= 0.0;
   const std::array<double, 2> ends = in.through_pad();
   s.inflow = forward ? ends[0] : -ends[1];
   s.outflow = forward ? ends[1] : -ends[0];
@@ -204,9 +267,31 @@ FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const Fil
     const std::array<double, 2> through = in.through(i);
     s.side_flow += through[0] - through[1];
   }
+}
+
+}  // namespace
+
+FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
+                           double density) {
+  WHIRL_EXPECTS(film.inside(p));
+  constexpr std::size_t samples = 121;
+  FilmStanding s;
+  FilmField f;
+  if (film.grid) {
+    f = sample_grid(film, pad, p, samples);
+    stand_on_grid(film, pad, p, s);
+  } else {
+    PadInState in(film, pad, p);
+    f = in.field(samples);
+    stand_on_profile(in, p.slip >= 0.0, s);
+  }
+  FilmForce force;
+  alone(film, pad).evaluate(p, force);
+  s.force = -force.F;
+  s.power = force.pump - (force.F.dot(p.w) + force.T * p.slip);
   for (std::size_t i = 0; i < samples; ++i) {
-    if (film.peak * f.pressure[i] > s.highest) {
-      s.highest = film.peak * f.pressure[i];
+    if (f.middle[i] > s.highest) {
+      s.highest = f.middle[i];
       s.highest_at = f.theta[i];
     }
     s.reynolds = std::max(

@@ -14,9 +14,11 @@ namespace whirl::elements {
 
 /// Along one pad, at equidistant angles from its start to its end, in the sense of theta.
 struct FilmField {
-  std::vector<double> theta;      ///< rad, from +y towards +z
-  std::vector<double> thickness;  ///< h, m
+  std::vector<double> theta;  ///< rad, from +y towards +z
+  std::vector<double>
+      thickness;  ///< h, m; of a pad with recesses in the middle, or beside a relief track
   std::vector<double> pressure;   ///< axial mean P above ambient, Pa
+  std::vector<double> middle;     ///< pressure in the middle of the length, Pa
   std::vector<double> slope;      ///< dP/dtheta, Pa/rad
   std::vector<double> viscosity;  ///< eta, Pa s
   std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it

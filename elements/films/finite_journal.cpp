@@ -95,7 +95,7 @@ double FiniteJournal::pressure_unit(const Gap& g) const {
 PadMedium FiniteJournal::medium(std::size_t k, const FilmPoint& p) const {
   const Gap g = gap(k, p);
   PadMedium m;
-  if (kept_from >= 0)
+  if (kept_from >= 0 && !alike)
     m.log_viscosity = {p.kept + kept_from + static_cast<std::ptrdiff_t>(k) * kept_each() + 2,
                        static_cast<std::size_t>(knots)};
   m.reynolds = turbulent_density * radius * std::abs(p.slip) * g.pad / viscosity;
@@ -122,6 +122,7 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
   WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && viscosity >= 0.0);
   if (!inside(p)) return set_outside(f);
+  if (grid) return evaluate_on_grid(p, f);
   if (!isoviscous()) return evaluate_through(p, f);
   f.F.setZero();
   f.T = 0.0;
@@ -142,6 +143,7 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   if (!inside(p)) return set_outside(f, t);
+  if (grid) return evaluate_on_grid(p, f, t);
   if (!isoviscous()) return evaluate_through(p, f, t);
   f.F.setZero();
   f.T = 0.0;
@@ -296,6 +298,93 @@ void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f, FilmTange
                     across.dot(by_slip * load.by_reynolds - half_lift * (load.by_W * across)) -
                 drag * (shear.value + p.slip * by_slip * shear.by_reynolds);
     f.pump += unit * m.edge * (load.fed + W.dot(normal));
+  }
+}
+
+GridDrive FiniteJournal::drive(std::size_t k, const FilmPoint& p) const {
+  WHIRL_EXPECTS(grid && k < grid->size());
+  const Gap g = gap(k, p);
+  const PadMedium m = medium(k, p);
+  const PadPlace at = place(k, p);
+  const Vec2 W = source_of(at, p.slip, g.pad);
+  return {at.e, Vec3(W.x(), W.y(), 0.5 * p.slip), g.pad, m.reynolds, m.edge};
+}
+
+namespace {
+
+/// Of a film that nothing drives: 1/pi int G(n) n^T dphi, as PadFilm::mean_slope.
+Mat2 mean_slope(const GridPad& pad, const GridDrive& at_rest) {
+  constexpr int directions = 24;
+  GridDrive in = at_rest;
+  GridLoad load;
+  Mat2 C = Mat2::Zero();
+  for (int k = 0; k < directions; ++k) {
+    const double angle = two_pi * (k + 0.5) / directions;
+    const Vec2 n(std::cos(angle), std::sin(angle));
+    in.source << n, 0.0;
+    pad.load(in, load);
+    C += 2.0 / directions * load.z.head<2>() * n.transpose();
+  }
+  return C;
+}
+
+}  // namespace
+
+void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f) const {
+  f = {Vec2::Zero(), 0.0, 0.0};
+  GridLoad load;
+  for (std::size_t k = 0; k < grid->size(); ++k) {
+    const GridDrive in = drive(k, p);
+    (*grid)[k].load(in, load);
+    const Gap g = gap(k, p);
+    const double unit = pressure_unit(g) * radius * length;
+    const double drag = viscosity * std::pow(radius, 3) * length / g.pad;
+    const Vec2& n = surface->arcs()[k].thinnest;
+    const Vec2 across(-n.y(), n.x());
+    f.F -= unit * load.z.head<2>();
+    f.T += 0.5 * unit * (g.lift * across.dot(load.z.head<2>()) - load.z[2]);
+    f.T -= drag * p.slip * load.shear;
+    f.pump += unit * in.edge * (load.fed + load.normal);
+  }
+}
+
+void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
+  f = {Vec2::Zero(), 0.0, 0.0};
+  t.F_r.setZero();
+  t.F_w.setZero();
+  t.F_slip.setZero();
+  t.T_r.setZero();
+  t.T_w.setZero();
+  t.T_slip = 0.0;
+  GridLoad load;
+  GridSlopes by;
+  for (std::size_t k = 0; k < grid->size(); ++k) {
+    const GridDrive in = drive(k, p);
+    (*grid)[k].load(in, load, by);
+    if (in.source.isZero(0.0) && in.edge == 0.0)
+      by.by_source.topLeftCorner<2, 2>() = mean_slope((*grid)[k], in);
+    const Gap g = gap(k, p);
+    const double c = g.pad, unit = pressure_unit(g) * radius * length;
+    const double drag = viscosity * std::pow(radius, 3) * length / c;
+    const Vec2& n = surface->arcs()[k].thinnest;
+    const Vec2 across(-n.y(), n.x());
+    // torque of the pressure: unit row . z
+    Eigen::RowVector3d row;
+    row << 0.5 * g.lift * across.transpose(), -0.5;
+    Vec3 source_slip;
+    source_slip << -0.5 * g.lift * across, 0.5;
+    const double reynolds_slip = std::copysign(turbulent_density * radius * c / viscosity, p.slip);
+    const Vec3 z_slip = by.by_source * source_slip + reynolds_slip * by.by_reynolds;
+    f.F -= unit * load.z.head<2>();
+    t.F_r -= unit / c * by.by_e.topRows<2>();
+    t.F_w -= unit * by.by_source.topLeftCorner<2, 2>();
+    t.F_slip -= unit * z_slip.head<2>();
+    f.T += unit * row.dot(load.z) - drag * p.slip * load.shear;
+    t.T_r += unit / c * (row * by.by_e).transpose() - drag * p.slip / c * by.shear_by_e;
+    t.T_w += unit * (row * by.by_source).head<2>().transpose();
+    t.T_slip += unit * row.dot(z_slip) -
+                drag * (load.shear + p.slip * reynolds_slip * by.shear_by_reynolds);
+    f.pump += unit * in.edge * (load.fed + load.normal);
   }
 }
 

@@ -42,11 +42,14 @@
 //     moving front swallows;
 //   a viscosity that varies along each pad, and clearances that grow, by what the film keeps of the
 //     last equilibrium (film_heat.hpp). Both are constants to force and tangent.
+// Recesses: tapers, pockets of pressure dams, relief tracks, and any shape where no profile along the
+// axis is to be assumed, by finite volumes in both directions (grid_film.hpp): about 100 times dearer.
 // Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
 // & Thomsen, ASME 1978 (Topics in Fluid Film Bearing and Rotor Bearing System Design and
 // Optimization, pp. 1-28).
 #pragma once
 #include <elements/films/film.hpp>
+#include <elements/films/grid_film.hpp>
 #include <elements/films/pad_film.hpp>
 #include <memory>
 #include <vector>
@@ -102,6 +105,9 @@ struct FiniteJournal {
   double length = 0;     ///< L, m
   double viscosity = 0;  ///< eta, Pa s
   std::shared_ptr<const JournalSurface> surface;
+  /// One a pad where the pressure is found on a grid along the axis too, which recesses need
+  /// (grid_film.hpp); null: the axial profile.
+  std::shared_ptr<const std::vector<GridPad>> grid{};
   /// Axial profile: leakage/L^2 is the outflow term and `source` eta the source of (h^3 P')'/R^2 -
   /// leakage/L^2 h^3 P = source eta f.
   double leakage = 10, source = 10;
@@ -122,6 +128,7 @@ struct FiniteJournal {
   /// of the assembled clearance c_b and that of c_p, both over c_b, then ln(eta/viscosity) at
   /// `knots` equidistant places from its start to its end.
   std::ptrdiff_t kept_from = -1;
+  bool alike = false;  ///< one viscosity whatever is kept
   int knots = 0;
   static constexpr int kept_growths = 2;  ///< before the knots
   int kept_each() const { return knots + kept_growths; }
@@ -152,6 +159,8 @@ struct FiniteJournal {
     Vec2 e, W;
   };
   PadPlace place(std::size_t k, const FilmPoint& p) const;
+  /// The film of pad k on its grid. @pre grid.
+  GridDrive drive(std::size_t k, const FilmPoint& p) const;
   /// Whether the journal is clear of every pad.
   bool inside(const FilmPoint& p) const;
 
@@ -160,6 +169,8 @@ struct FiniteJournal {
   bool carries_oil(std::size_t k, const FilmPoint& p) const;
   void add_carried(std::size_t k, const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
   void evaluate_through(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
+  void evaluate_on_grid(const FilmPoint& p, FilmForce& f) const;
+  void evaluate_on_grid(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 };
 
 using FiniteJournalBearing = LateralJoint<FilmLaw<FiniteJournal>>;

@@ -1,6 +1,7 @@
 // The only translator from Model + Mesh to System. Absent physics is an absent batch: what the deck
 // does not contain is not added.
 #pragma once
+#include <assembly/film_grid.hpp>
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
 #include <elements/films/film_heat.hpp>
@@ -70,8 +71,8 @@ struct TiltingPads {
     Vec2 centre;      ///< against the middle of the bearing, m
   };
   std::function<std::vector<Face>(const NodeAt&)> faces;
-  /// points: of the grid on the circumference, 0: that of the bearing.
-  std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
+  /// grid: of the films; without points that of the bearing.
+  std::function<elements::PadCoefficients(const NodeAt&, const FilmGrid& grid)> coefficients;
   /// N, one a pad that carries little: what it would carry in another stable balance of its tilt,
   /// journal and pivot where they are; NaN: there is none, or it carries much in one of them.
   std::function<std::vector<double>(const NodeAt&)> other_loads;

@@ -1,5 +1,6 @@
 // The films of journal bearings as their kernels, from what the model says.
 #pragma once
+#include <assembly/film_grid.hpp>
 #include <elements/films/film_heat.hpp>
 #include <elements/films/finite_journal.hpp>
 #include <elements/films/tilting_pad.hpp>
@@ -7,9 +8,9 @@
 
 namespace whirl::assembly {
 
-/// nodes: points of the grid round the circumference, law.nodes or others to compare with.
-/// @throws Error E84 as JournalSurface.
-elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes);
+/// grid: that of the law, or another to compare with.
+/// @throws Error E84 as JournalSurface and GridPad.
+elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, FilmGrid grid);
 
 /// Points round the circumference of the films of dampers.
 inline constexpr int damper_nodes = 72;
@@ -18,10 +19,10 @@ inline constexpr int damper_nodes = 72;
 /// @pre a film with a grid: Film::finite or Film::sealed.
 elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int nodes);
 
-/// One a pad, in their order; points: of the grid round the circumference.
+/// One a pad, in their order.
 /// @throws Error E84 as make_tilting_pad.
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
-                                                    int points);
+                                                    FilmGrid grid);
 
 /// At a temperature, K; of a grade within its range.
 double viscosity_at(const model::Oil& o, double temperature);

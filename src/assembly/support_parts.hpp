@@ -1,5 +1,6 @@
 // What the functions that add one kind of support share. Internal to src/assembly.
 #pragma once
+#include <assembly/film_kernels.hpp>
 #include <assembly/parts.hpp>
 #include <elements/films/film_heat.hpp>
 #include <elements/supports/at_offset.hpp>
@@ -122,6 +123,12 @@ void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance
 double viscosity_of(const model::Oil& o);
 /// Turbulence and supply pressure of a film, and how much it keeps of its heat.
 void set_flow(elements::FiniteJournal& film, const model::FilmFlow& flow, const model::Oil& oil);
+/// The recesses of a pad by its number and its arc, rad.
+using RecessesOf = std::function<std::vector<elements::Recess>(std::size_t, double)>;
+/// As FilmGrid::uniform.
+void make_uniform(elements::FiniteJournal& film);
+/// From now on the pressure of a film is found on a grid along its axis too.
+void put_on_grid(elements::FiniteJournal& film, FilmGrid grid, const RecessesOf& recesses);
 /// A film bearing for results; with heat it becomes something that states keep. pads_at: its pads in
 /// a state, which live as long as the function.
 using HeatPadsAt = std::function<std::vector<elements::HeatPad>(const NodeAt&)>;

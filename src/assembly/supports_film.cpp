@@ -114,12 +114,58 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   add_film_condition(a, b, n, law, clearance);
 }
 
+/// The stretches that grooves leave of a cylinder.
+std::vector<elements::JournalPad> pads_between(std::vector<model::FiniteJournal::Groove> grooves) {
+  using Groove = model::FiniteJournal::Groove;
+  for (Groove& g : grooves)
+    g.at -= two_pi * std::floor(g.at / two_pi);
+  std::sort(grooves.begin(), grooves.end(),
+            [](const Groove& a, const Groove& b) { return a.at < b.at; });
+  std::vector<elements::JournalPad> pads;
+  for (std::size_t k = 0; k < grooves.size(); ++k) {
+    const bool last = k + 1 == grooves.size();
+    const Groove &own = grooves[k], &next = grooves[last ? 0 : k + 1];
+    const double start = own.at + 0.5 * own.width,
+                 end = next.at - 0.5 * next.width + (last ? two_pi : 0.0);
+    pads.push_back({start, end, 0.5 * (start + end)});
+  }
+  return pads;
+}
+
 std::vector<elements::JournalPad> pads_of(const model::FiniteJournal& law) {
   using Shape = model::FiniteJournal::Shape;
-  if (law.shape == Shape::two_grooves) return elements::two_groove_pads(law.groove_at, law.groove);
-  if (law.shape == Shape::lobes)
-    return elements::lobe_pads(law.lobes, law.lobe_at, law.groove, law.lobe_offset);
+  switch (law.shape) {
+    case Shape::plain: return {};
+    case Shape::two_grooves:
+    case Shape::pressure_dam: return elements::two_groove_pads(law.groove_at, law.groove);
+    case Shape::lobes:
+    case Shape::tapered_land:
+      return elements::lobe_pads(law.lobes, law.lobe_at, law.groove, law.lobe_offset);
+    case Shape::grooves: return pads_between(law.grooves);
+  }
   return {};
+}
+
+/// Of pad k, with the arc `arc`.
+std::vector<elements::Recess> recesses_of(const model::FiniteJournal& law, std::size_t k,
+                                          double arc) {
+  using Shape = model::FiniteJournal::Shape;
+  if (law.shape == Shape::pressure_dam && k == 1) {
+    if (law.relief_width == 0) return {};
+    return {{0.0, arc, 0.0, 0.0, law.relief_width / law.length, true}};
+  }
+  if (law.shape != Shape::pressure_dam && law.shape != Shape::tapered_land) return {};
+  elements::Recess r;
+  r.to = law.recess_arc;
+  r.depth_from = law.recess_depth;
+  r.depth_to = law.shape == Shape::pressure_dam ? law.recess_depth : 0.0;
+  r.width = law.recess_width / law.length;
+  if (law.leading_at_end) {
+    r.from = arc - law.recess_arc;
+    r.to = arc;
+    std::swap(r.depth_from, r.depth_to);
+  }
+  return {r};
 }
 
 template <class Film>
@@ -130,14 +176,41 @@ void add_damper(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
 
 }  // namespace
 
-elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes) {
+void make_uniform(elements::FiniteJournal& film) {
+  film.mass_conserving = false;
+  film.alike = true;
+}
+
+void put_on_grid(elements::FiniteJournal& film, FilmGrid grid, const RecessesOf& recesses) {
+  WHIRL_EXPECTS(film.surface != nullptr);
+  constexpr int fewest = 8;
+  double total = 0.0;
+  for (const elements::JournalSurface::Arc& arc : film.surface->arcs())
+    total += arc.length;
+  std::vector<elements::GridPad> pads;
+  for (std::size_t k = 0; k < film.surface->arcs().size(); ++k) {
+    const elements::JournalSurface::Arc& arc = film.surface->arcs()[k];
+    const int columns =
+        std::max(fewest, static_cast<int>(std::lround(grid.points * arc.length / total)));
+    pads.emplace_back(arc.start, arc.length, arc.round, film.radius / film.length, columns,
+                      grid.rows, recesses(k, arc.length));
+  }
+  film.grid = std::make_shared<const std::vector<elements::GridPad>>(std::move(pads));
+  film.leakage = film.source = 12.0;  // of Reynolds' equation itself
+}
+
+elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, FilmGrid grid) {
   elements::FiniteJournal film;
   film.radius = 0.5 * law.diameter;
   film.length = law.length;
   film.viscosity = viscosity_of(law.oil);
-  film.surface =
-      std::make_shared<elements::JournalSurface>(law.clearance, law.preload, pads_of(law), nodes);
+  film.surface = std::make_shared<elements::JournalSurface>(
+      law.clearance, law.preload, pads_of(law),
+      std::min(grid.points, elements::JournalSurface::max_nodes));
   set_flow(film, law.flow, law.oil);
+  if (grid.uniform) make_uniform(film);
+  if (grid.rows > 0)
+    put_on_grid(film, grid, [&](std::size_t k, double arc) { return recesses_of(law, k, arc); });
   return film;
 }
 
@@ -199,7 +272,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
              const model::FiniteJournal& law) {
   guarded(a, b, [&] {
     const auto film =
-        std::make_shared<elements::FiniteJournal>(make_finite_journal(law, law.nodes));
+        std::make_shared<elements::FiniteJournal>(make_finite_journal(law, own_grid(law)));
     const HeatPadsAt pads = [film, journal = journal_at(n)](const NodeAt& at) {
       const elements::FilmPoint p = elements::FilmLaw<elements::FiniteJournal>::point(journal(at));
       std::vector<elements::HeatPad> out;

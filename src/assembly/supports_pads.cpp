@@ -14,7 +14,7 @@
 namespace whirl::assembly {
 
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
-                                                    int points) {
+                                                    FilmGrid grid) {
   const std::vector<model::TiltingPadJournal::Pad> pads = law.pads();
   double arcs = 0;
   for (const auto& p : pads)
@@ -31,9 +31,14 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
     g.arc = p.arc;
     g.offset = p.offset;
     g.thickness = law.thickness;
-    g.points = static_cast<int>(std::lround(points * p.arc / arcs));
+    const int points = static_cast<int>(std::lround(grid.points * p.arc / arcs));
+    g.points = std::min(points, elements::JournalSurface::max_nodes);
     elements::TiltingPad pad = elements::make_tilting_pad(g);
     set_flow(pad.film, law.flow, law.oil);
+    if (grid.uniform) make_uniform(pad.film);
+    if (grid.rows > 0)
+      put_on_grid(pad.film, {points, grid.rows},
+                  [](std::size_t, double) { return std::vector<elements::Recess>{}; });
     pad.tilt_stiffness += law.tilt_stiffness;
     pad.inertia = law.inertia;
     pad.mass = law.mass;
@@ -58,7 +63,7 @@ class PadRing {
       : law_(law),
         offset_{n.shaft.offset, n.other.offset},
         ends_{n.shaft.node, n.other.node},
-        pads_(make_tilting_pads(law, law.nodes)) {
+        pads_(make_tilting_pads(law, own_grid(law))) {
     const Index line = a.builder.add_line(fmt::format("pads of {}", name_of(b)));
     for (std::size_t k = 0; k < pads_.size(); ++k) {
       const auto add = [&](const char* what) {
@@ -169,8 +174,9 @@ class PadRing {
     }
     return out;
   }
-  elements::PadCoefficients coefficients(const NodeAt& at, int points) const {
-    std::vector<elements::TiltingPad> finer = points > 0 ? make_tilting_pads(law_, points) : pads_;
+  elements::PadCoefficients coefficients(const NodeAt& at, const FilmGrid& grid) const {
+    std::vector<elements::TiltingPad> finer =
+        grid.points > 0 ? make_tilting_pads(law_, grid) : pads_;
     place_kept(finer);
     const Index n = 2 + own * static_cast<Index>(pads());
     elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n),
@@ -294,8 +300,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };
   pads.faces = [ring](const NodeAt& at) { return ring->faces(at); };
   pads.other_loads = [ring](const NodeAt& at) { return ring->other_loads(at); };
-  pads.coefficients = [ring](const NodeAt& at, int points) {
-    return ring->coefficients(at, points);
+  pads.coefficients = [ring](const NodeAt& at, const FilmGrid& grid) {
+    return ring->coefficients(at, grid);
   };
   a.built.tilting_pads.push_back(std::move(pads));
 

@@ -112,16 +112,28 @@ struct ShortJournal {
 };
 SupportTraits traits(const ShortJournal&);
 
-/// Journal bearing of finite length with cavitation: plain, with axial grooves, or multi-lobe.
+/// Journal bearing of finite length with cavitation: plain, with axial grooves, multi-lobe, or with
+/// recesses in its surface.
 struct FiniteJournal {
   double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial, as assembled
   Oil oil;
   double preload = 0;  ///< of the pads, in [0, 1)
-  enum class Shape { plain, two_grooves, lobes } shape = Shape::plain;
-  int lobes = 3;
+  enum class Shape { plain, two_grooves, grooves, lobes, pressure_dam, tapered_land };
+  Shape shape = Shape::plain;
+  int lobes = 3;  ///< or lands
+  struct Groove {
+    double at = 0, width = 20 * pi / 180;  ///< rad, from +y towards +z
+  };
+  std::vector<Groove> grooves;  ///< of Shape::grooves
+  /// A pocket of the first pad with a dam at its end, or a taper of each: its arc from the leading edge
+  /// (rad), its depth there and its width (m).
+  double recess_arc = 0, recess_depth = 0, recess_width = 0;
+  double relief_width = 0;      ///< of a track in the second pad, m; 0: none
+  bool leading_at_end = false;  ///< edges that lead: the ends of the pads (z -> y)
   double groove = 0, groove_at = 0, lobe_at = 0, lobe_offset = 0.5;  ///< rad; from +y towards +z
   FilmFlow flow;
   int nodes = 72;  ///< grid points round the circumference
+  int rows = 0;    ///< of a grid along the axis too, over half the length; 0: one profile there
 };
 SupportTraits traits(const FiniteJournal&);
 
@@ -147,6 +159,7 @@ struct TiltingPadJournal {
   double tilt_stiffness = 0;                      ///< of a flexure, N m/rad
   std::vector<double> frequency_ratios;           ///< frequency over speed, of further coefficients
   int nodes = 72;                                 ///< grid points round the circumference
+  int rows = 0;  ///< of a grid along the axis too, over half the length; 0: one profile there
 
   /// All pads, in the order of the deck or of their pivots from the first.
   std::vector<Pad> pads() const;

@@ -160,7 +160,7 @@ FilmCurves curves_of(const FilmResults& f) {
       }
     });
   };
-  out.pressure = field("pressure", 1e-6 * f.peak, &elements::FilmField::pressure);
+  out.pressure = field("pressure", 1e-6, &elements::FilmField::middle);
   out.thickness = field("film thickness", 1e6, &elements::FilmField::thickness);
   out.thickness.style = {1, plot::Dash::dashed, 1.6};
   if (!f.heat) return out;

@@ -33,7 +33,6 @@ struct FilmResults {
   std::vector<elements::FilmStanding> pads;
   std::vector<elements::FilmField> fields;
   std::optional<elements::HeatBalance> heat;
-  double peak = 1.5;     ///< pressure in the middle over the axial mean
   double viscosity = 0;  ///< mean, Pa s
   double reynolds = 0;   ///< rho R |s| c/eta of the assembled clearance
   double transition =
@@ -77,6 +76,10 @@ struct SupportCoefficients {
   /// norm; of grids more than half as fine, from those on one half as fine, which is more than the
   /// error. NaN: no grid.
   double grid_error = nan;
+  /// Of journals and pads with one profile of the pressure along their axis: how far K and C are from
+  /// those of a film that is solved along the axis too (grid_film.hpp; its own error is about 1e-3), at
+  /// the same place and as isoviscous films, in the same norm. NaN: no such profile.
+  double axial_error = nan;
   /// Of tilting pads; K and C are then what the shaft sees at the frequency of its own spin, with
   /// the pads following.
   std::optional<PadResults> pads{};

@@ -526,6 +526,7 @@ const Elsewhere elsewhere[] = {
     {"coefficients", "eccentricity / clearance [-]",
      "app/test_support_decks.cpp, test_step_speeds.cpp"},
     {"coefficients", "grid error [-]", "app/test_static_speeds.cpp"},
+    {"coefficients", "axial error [-]", "app/test_recessed_journals.cpp"},
     {"critical_speeds", "direction [-]", "app/test_direction.cpp"},
     {"critical_speeds", "kind [-]", "app/test_direction.cpp"},
     {"damped", "direction [-]", "app/test_direction.cpp"},

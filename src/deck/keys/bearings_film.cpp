@@ -175,6 +175,120 @@ void describe(Visitor& v, model::ShortJournal& b) {
               "type = \"journal\" has no such limit");
 }
 
+void describe(Visitor& v, model::FiniteJournal::Groove& g) {
+  v.quantity(required("at"), g.at, "deg", any, "angle of its middle, from y towards z");
+  v.quantity("width", g.width, "deg", Range{0, two_pi, true, true}, "along the circumference");
+}
+
+namespace {
+
+/// Along the axis, of shapes that need a grid there.
+constexpr int usual_rows = 6;
+
+/// Which edge of the pads the surface of the journal enters by.
+void leading_edge(Visitor& v, bool& at_end) {
+  int edge = at_end ? 1 : 0;
+  v.choice("leading", edge, {{"start", "of a shaft that turns y -> z"}, {"end", "z -> y"}},
+           "edge of a pad at which its recess begins");
+  at_end = edge == 1;
+}
+
+/// Pressure dam of the first pad, relief track of the second.
+void describe_dam(Visitor& v, model::FiniteJournal& b) {
+  b.shape = model::FiniteJournal::Shape::pressure_dam;
+  b.rows = usual_rows;
+  b.groove = 20 * pi / 180;
+  v.quantity("groove", b.groove, "deg", Range{0, pi / 2, true, true}, "width of a groove");
+  v.quantity("groove_at", b.groove_at, "deg", any,
+             "angle of the first groove, from y towards z; the pad with the dam follows it");
+  v.number("preload", b.preload, Range{0, 1, false, true},
+           "1 - (assembled clearance)/(clearance of the two pads); 0: a cylinder");
+  v.quantity(required("dam_arc"), b.recess_arc, "deg", Range{0, pi, true, true},
+             "arc of the pocket, from the leading edge of its pad to the dam");
+  v.quantity(required("dam_depth"), b.recess_depth, "um", positive, "depth of the pocket");
+  v.quantity(required("dam_width"), b.recess_width, "mm", positive,
+             "axial width of the pocket, in the middle of the length");
+  v.quantity(optional("relief_width", "no track"), b.relief_width, "mm", positive,
+             "axial width of a relief track in the middle of the other pad, deep and open to the "
+             "grooves");
+  leading_edge(v, b.leading_at_end);
+  if (!v.clean()) return;
+  if (b.recess_arc >= pi - b.groove)
+    v.error("E14", "dam_arc", "the pocket is longer than its pad: there is no dam");
+  else if (b.recess_width > b.length || b.relief_width >= b.length)
+    v.error("E14", b.recess_width > b.length ? "dam_width" : "relief_width",
+            fmt::format("wider than the film is long ({})", units::display(b.length, "mm")));
+}
+
+void describe_lands(Visitor& v, model::FiniteJournal& b) {
+  b.shape = model::FiniteJournal::Shape::tapered_land;
+  b.rows = usual_rows;
+  b.groove = 20 * pi / 180;
+  v.integer("lands", b.lobes, between(2, 8), "number of pads");
+  v.quantity("groove", b.groove, "deg", Range{0, pi / 2, true, true},
+             "width of a groove between two pads");
+  v.quantity("land_at", b.lobe_at, "deg", any, "angle of the middle of the first pad, from y to z");
+  v.quantity(required("taper_arc"), b.recess_arc, "deg", Range{0, pi, true, true},
+             "arc of the taper, from the leading edge of a pad to its land");
+  v.quantity(required("taper_depth"), b.recess_depth, "um", positive,
+             "depth of the taper at the leading edge");
+  const bool narrow = v.quantity(optional("taper_width", "the whole length"), b.recess_width, "mm",
+                                 positive, "axial width of the taper, in the middle of the length");
+  leading_edge(v, b.leading_at_end);
+  if (!v.clean()) return;
+  if (!narrow) b.recess_width = b.length;
+  const double arc = two_pi / b.lobes - b.groove;
+  if (b.recess_arc > arc)
+    v.error("E14", "taper_arc", fmt::format("longer than a pad ({})", units::display(arc, "deg")));
+  else if (b.recess_width > b.length)
+    v.error("E14", "taper_width",
+            fmt::format("wider than the film is long ({})", units::display(b.length, "mm")));
+}
+
+void describe_grooves(Visitor& v, model::FiniteJournal& b) {
+  b.shape = model::FiniteJournal::Shape::grooves;
+  v.list(required("axial_groove"), Visitor::body_of(b.grooves, model::FiniteJournal::Groove{}),
+         "an axial groove");
+  if (!v.clean()) return;
+  for (std::size_t k = 0; k < b.grooves.size(); ++k)
+    for (std::size_t i = 0; i < k; ++i) {
+      const double apart = std::abs(std::remainder(b.grooves[k].at - b.grooves[i].at, two_pi));
+      if (apart > 0.5 * (b.grooves[k].width + b.grooves[i].width)) continue;
+      v.error("E14", "axial_groove",
+              fmt::format("grooves {} and {} touch each other", i + 1, k + 1));
+      return;
+    }
+}
+
+/// The grid of a film; shapes that need one along the axis come with some rows.
+template <class Law>
+void film_grid(Visitor& v, Law& b, const char* without) {
+  const bool points = v.integer(optional("grid", "72, or 240 with a grid along the axis"), b.nodes,
+                                between(24, 360), "points round the circumference");
+  const bool needed = b.rows > 0;
+  v.integer(
+      optional("axial_grid", without), b.rows, between(0, 8),
+      "rows over half the length where the pressure along the axis is found on a grid too, 3 to "
+      "8, some twenty times dearer; 0: one profile, whose error stands beside the coefficients");
+  if (!v.clean()) return;
+  if (needed && b.rows == 0)
+    v.error("E26", "axial_grid", "a surface that varies along the axis has no single profile",
+            "leave it out, or 3 to 8 rows");
+  else if (b.rows == 1 || b.rows == 2)
+    v.error("E14", "axial_grid", "a grid along the axis has 3 to 8 rows over half the length");
+  if (!v.clean() || b.rows == 0) return;
+  if (!points) b.nodes = 240;
+  const bool heated = b.flow.heat.has_value(),
+             conserves = b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+  if (heated || conserves)
+    v.error("E26", heated ? "heat" : "cavitation",
+            heated ? "the heat balance of a film goes with one profile along the axis"
+                   : "films that conserve mass have one profile along the axis",
+            "a surface that is the same all along the axis, with axial_grid = 0");
+}
+
+}  // namespace
+
 void describe(Visitor& v, model::FiniteJournal& b) {
   using Shape = model::FiniteJournal::Shape;
   dimensions(v, b);
@@ -205,9 +319,15 @@ void describe(Visitor& v, model::FiniteJournal& b) {
          if (w.clean() && b.lobes * b.groove >= two_pi)
            w.error("E14", "groove", "the grooves leave nothing of the lobes");
        }},
+      {"grooves", "a cylinder with axial grooves anywhere",
+       [&](Visitor& w) { describe_grooves(w, b); }},
+      {"pressure_dam", "two grooves; the first pad with a pocket that ends at a dam",
+       [&](Visitor& w) { describe_dam(w, b); }},
+      {"tapered_land", "equal pads between grooves, each with a taper that ends at a land",
+       [&](Visitor& w) { describe_lands(w, b); }},
   };
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
-  v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
+  film_grid(v, b, "0, or 6 for shapes that vary along the axis");
   const bool fed = b.flow.supply_pressure > 0, heated = b.flow.heat.has_value(),
              conserves = b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
   if (v.clean() && b.shape == Shape::plain && (fed || heated || conserves))
@@ -287,7 +407,7 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
   v.quantities(beside_motion("frequency_ratios"), b.frequency_ratios, "", not_negative, -1,
                "frequencies over the speed at which reduced coefficients are written beside the "
                "synchronous ones");
-  v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
+  film_grid(v, b, "0");
   if (!v.clean()) return;
   if ((count || first) && !b.own.empty())
     v.error("E26", count ? "pads" : "first_pivot", "equal pads and pads by themselves are given",

@@ -1,0 +1,715 @@
+#include <elements/films/grid_film.hpp>
+#include <core/contract.hpp>
+#include <core/error.hpp>
+#include <elements/films/turbulence.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace whirl::elements {
+
+namespace {
+
+[[noreturn]] void recess_fault(const char* what) {
+  throw run_error("E84", std::string("journal bearing: ") + what);
+}
+
+/// Places in ascending order, each once.
+std::vector<double> distinct(std::vector<double> x) {
+  std::sort(x.begin(), x.end());
+  const auto same = [](double a, double b) { return b - a < 1e-9; };
+  x.erase(std::unique(x.begin(), x.end(), same), x.end());
+  return x;
+}
+
+/// How many cells each stretch between stops has: by its share of `cells`, at least `fewest`, in all no
+/// more than `most`.
+std::vector<int> shared_out(const std::vector<double>& stops, int cells, int fewest, int most) {
+  const double length = stops.back() - stops.front();
+  std::vector<int> numbers;
+  int sum = 0;
+  for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
+    const double share = (stops[k + 1] - stops[k]) / length;
+    numbers.push_back(std::max(fewest, static_cast<int>(std::lround(cells * share))));
+    sum += numbers.back();
+  }
+  for (; sum > most; --sum)
+    --*std::max_element(numbers.begin(), numbers.end());
+  if (*std::min_element(numbers.begin(), numbers.end()) < 1)
+    recess_fault("too many recesses on one pad for its grid");
+  return numbers;
+}
+
+/// Edges of cells along the arc.
+std::vector<double> columns_between(const std::vector<double>& stops, int cells) {
+  const std::vector<int> numbers = shared_out(stops, cells, 2, GridPad::most_columns);
+  std::vector<double> out{stops.front()};
+  for (std::size_t k = 0; k + 1 < stops.size(); ++k)
+    for (int i = 1; i <= numbers[k]; ++i)
+      out.push_back(stops[k] + (stops[k + 1] - stops[k]) * i / numbers[k]);
+  return out;
+}
+
+/// Elements along the axis from the middle to the side: two at least beside a recess, where films may
+/// end within a short way.
+std::vector<double> elements_between(const std::vector<double>& stops, int elements) {
+  const int fewest = stops.size() == 2 ? 1 : std::max(2, (2 * elements + 1) / 3);
+  const std::vector<int> numbers = shared_out(stops, elements, fewest, GridPad::most_rows / 2);
+  std::vector<double> out{stops.front()};
+  for (std::size_t k = 0; k + 1 < stops.size(); ++k)
+    for (int i = 1; i <= numbers[k]; ++i)
+      out.push_back(stops[k] + (stops[k + 1] - stops[k]) * i / numbers[k]);
+  return out;
+}
+
+void check_recesses(const std::vector<Recess>& recesses, double arc) {
+  for (const Recess& r : recesses) {
+    if (!(r.from >= 0 && r.to > r.from && r.to <= arc + 1e-9))
+      recess_fault("a recess lies beyond its pad, or is empty");
+    if (!(r.depth_from >= 0 && r.depth_to >= 0)) recess_fault("the depth of a recess is negative");
+    if (!(r.width > 0 && r.width <= 1))
+      recess_fault("the width of a recess must be positive and at most the length");
+    for (const Recess& other : recesses)
+      if (&other != &r && other.from < r.to - 1e-9 && r.from < other.to - 1e-9)
+        recess_fault("recesses of a pad overlap");
+  }
+}
+
+}  // namespace
+
+GridPad::GridPad(double start, double arc, bool round, double ratio, int columns, int rows,
+                 const std::vector<Recess>& recesses)
+    : start_(start),
+      arc_(arc),
+      ratio_(ratio),
+      round_(round) {
+  WHIRL_EXPECTS(arc > 0.0 && arc <= two_pi * (1 + 1e-12) && ratio > 0.0);
+  WHIRL_EXPECTS(columns >= 8 && columns <= most_columns && rows >= 2 && rows <= most_even_rows);
+  check_recesses(recesses, arc);
+  std::vector<double> along{0.0, arc}, across{0.0, 1.0};
+  for (const Recess& r : recesses) {
+    along.push_back(r.from);
+    along.push_back(std::min(r.to, arc));
+    across.push_back(r.width);
+  }
+  const std::vector<double> edges = columns_between(distinct(along), columns);
+  const std::vector<double> widths = distinct(across),
+                            elements = elements_between(widths, (rows + 1) / 2);
+  bands_ = widths.size() - 1;
+  if (bands_ > most_bands || (round && bands_ > 1))
+    recess_fault("too many recesses on one pad for its grid");
+  const double gauss[2] = {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    Cell cell;
+    cell.from = edges[i];
+    cell.to = edges[i + 1];
+    const double a = start + cell.from, b = start + cell.to, half = 0.5 * (b - a);
+    cell.normal = Vec2(std::sin(b) - std::sin(a), std::cos(a) - std::cos(b));
+    for (std::size_t q = 0; q < 4; ++q) {
+      const double angle = a + half * (static_cast<double>(q / 2) + gauss[q % 2]);
+      cell.points[q] = {std::cos(angle), std::sin(angle), 0.5 * half};
+    }
+    cells_.push_back(cell);
+    for (std::size_t g = 0; g < bands_; ++g) {
+      const double middle = 0.5 * (widths[g] + widths[g + 1]);
+      std::array<double, 4> depth{0, 0, 0, 0};
+      unsigned char open = 0;
+      for (const Recess& r : recesses) {
+        if (middle > r.width || cell.from < r.from - 1e-9 || cell.to > r.to + 1e-9) continue;
+        open = r.open ? 1 : 0;
+        for (std::size_t q = 0; q < 4; ++q) {
+          const double at = cell.from + half * (static_cast<double>(q / 2) + gauss[q % 2]);
+          depth[q] = r.depth_from + (r.depth_to - r.depth_from) * (at - r.from) / (r.to - r.from);
+        }
+      }
+      depth_.push_back(depth);
+      open_.push_back(open);
+    }
+  }
+  add_rows(elements, widths);
+}
+
+/// Quadratic elements: a parabola is exact, and what is conducted from node to node is symmetric.
+void GridPad::add_rows(const std::vector<double>& elements, const std::vector<double>& widths) {
+  rows_.resize(2 * (elements.size() - 1));
+  for (std::size_t e = 0; e + 1 < elements.size(); ++e) {
+    const double width = elements[e + 1] - elements[e], middle = elements[e] + 0.5 * width;
+    std::size_t band = 0;
+    while (middle > widths[band + 1])
+      ++band;
+    const std::size_t nodes[3] = {2 * e, 2 * e + 1, 2 * e + 2};
+    const double shares[3] = {width / 6.0, 4.0 * width / 6.0, width / 6.0};
+    for (std::size_t k = 0; k < 3; ++k)  // the side itself has no pressure
+      if (nodes[k] < rows_.size())
+        rows_[nodes[k]].pieces.push_back({band, shares[k]});
+      else
+        side_share_ = shares[k];
+    // of both halves of the length, each width/2 wide
+    const double unit = 4.0 * ratio_ * ratio_ / (3.0 * width);
+    across_.push_back({nodes[0], nodes[1], band, 8.0 * unit});
+    across_.push_back({nodes[1], nodes[2], band, 8.0 * unit});
+    across_.push_back({nodes[0], nodes[2], band, -unit});
+  }
+}
+
+/// One state of a pad. Nodes are numbered row by row within a column of cells; a round pad is folded, so
+/// that its first and last columns are neighbours.
+class GridPad::Solver {
+ public:
+  Solver(const GridPad& pad, const GridDrive& in, bool with_slopes)
+      : pad_(pad),
+        in_(in),
+        n_(pad.cells_.size()),
+        m_(pad.rows_.size()),
+        bands_(pad.bands_),
+        half_(pad.round_ ? 2 * m_ : m_),
+        size_(n_ * m_),
+        slopes_(with_slopes) {
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t g = 0; g < bands_; ++g)
+        add_resistance(i, g);
+    number_columns();
+    add_conductances();
+    add_sources();
+    find_film();
+  }
+
+  void loads(GridLoad& out) const;
+  void slopes(GridSlopes& out);
+  GridField field() const;
+
+ private:
+  static constexpr std::size_t most = static_cast<std::size_t>(most_columns) * most_rows;
+  static constexpr std::size_t most_band = 2 * most_rows + 1;
+  /// A stretch along the arc: int 1/(a h^3), int D/(a h^3), int D^2/(a h^3); slopes by e_y, e_z,
+  /// reynolds.
+  struct Stretch {
+    double r = 0, s = 0, square = 0;
+    Vec3 dr = Vec3::Zero(), ds = Vec3::Zero(), dsquare = Vec3::Zero();
+  };
+  /// Half a cell; a type that takes no time to make.
+  struct Half {
+    double r, s, square;
+    Vec3 dr, ds, dsquare;
+    void clear() {
+      r = s = square = 0.0;
+      dr.setZero();
+      ds.setZero();
+      dsquare.setZero();
+    }
+  };
+  /// A whole cell: int a h^3, for the flow along the axis.
+  struct Section {
+    double g;
+    Vec3 dg;
+  };
+  /// In place of a neighbour: the groove at an end of the pad, the free side of the bearing, nothing.
+  static constexpr std::size_t groove = ~std::size_t{0}, side = groove - 1;
+
+  void add_resistance(std::size_t i, std::size_t g);
+  void number_columns();
+  void add_conductances();
+  void add_sources();
+  void find_film();
+  bool take_film(double least, bool may_form);
+  template <class Link>
+  void for_each_link(const Link& link) const;
+  void add_flow(GridField& out) const;
+  double to_front(std::size_t before, std::size_t wet) const;
+  void clear_matrix() { std::fill_n(a_.begin(), size_ * (2 * half_ + 1), 0.0); }
+  void couple(std::size_t k, std::size_t l, double by);
+  void factor();
+  void solve(double* x) const;
+  void solve_transposed(double* x) const;
+
+  const std::vector<Piece>& pieces(std::size_t j) const { return pad_.rows_[j].pieces; }
+  std::size_t at(std::size_t i, std::size_t j) const { return place_[i] * m_ + j; }
+  std::size_t node(std::size_t i, std::size_t j) const { return i == groove ? groove : at(i, j); }
+  /// Faces along the arc: f between cells f - 1 and f; n_ + 1 of them, n_ when round.
+  std::size_t faces() const { return pad_.round_ ? n_ : n_ + 1; }
+  std::size_t left_of(std::size_t f) const {
+    if (f > 0) return f - 1;
+    return pad_.round_ ? n_ - 1 : groove;
+  }
+  std::size_t right_of(std::size_t f) const { return f < n_ ? f : groove; }
+  Stretch face(std::size_t f, std::size_t g) const {
+    Stretch out;
+    const std::size_t l = left_of(f), r = right_of(f);
+    for (const auto& [cell, half] : {std::pair{l, std::size_t{1}}, std::pair{r, std::size_t{0}}}) {
+      if (cell == groove) continue;
+      const Half& h = half_cells_[(2 * cell + half) * bands_ + g];
+      out.r += h.r;
+      out.s += h.s;
+      out.square += h.square;
+      if (!slopes_) continue;
+      out.dr += h.dr;
+      out.ds += h.ds;
+      out.dsquare += h.dsquare;
+    }
+    return out;
+  }
+  double& entry(std::size_t row, std::size_t column) {
+    return a_[row * (2 * half_ + 1) + half_ + column - row];
+  }
+  double pressure(std::size_t k) const { return k == groove ? in_.edge : k == side ? 0.0 : P_[k]; }
+  /// Of a pressure that is given.
+  bool known(std::size_t k) const { return k >= side || open_[k] != 0; }
+  bool wet(std::size_t k) const { return k < side && film_[k] != 0; }
+  std::size_t far_node(std::size_t i, const Across& x) const {
+    return x.to < m_ ? at(i, x.to) : side;
+  }
+
+  const GridPad& pad_;
+  const GridDrive& in_;
+  std::size_t n_, m_, bands_, half_, size_;
+  bool slopes_;
+  double shear_ = 0;
+  Vec3 dshear_ = Vec3::Zero();
+  std::array<std::size_t, most_columns> place_;
+  std::array<Half, 2 * most_columns * most_bands> half_cells_;
+  std::array<Section, most_columns * most_bands> sections_;
+  std::array<double, (most_columns + 1) * most_rows> along_;  ///< conductance of face f in row j
+  std::array<double, most> P_, b_, inflow_;
+  std::array<double, 3 * most> lambda_;
+  std::array<std::array<double, most>, 3> B_;
+  std::array<unsigned char, most> film_, open_;
+  std::array<double, most * most_band> a_;
+};
+
+void GridPad::Solver::add_resistance(std::size_t i, std::size_t g) {
+  const Cell& cell = pad_.cells_[i];
+  const std::array<double, 4>& depth = pad_.depth(i, g);
+  const bool open = pad_.open(i, g);
+  double share = 0.0;
+  for (const Across& x : pad_.across_)  // three an element, the first two alike
+    if (x.band == g && x.conductance < 0.0)
+      share -= 4.0 * pad_.ratio_ * pad_.ratio_ / (3.0 * x.conductance);
+  Section section{0.0, Vec3::Zero()};
+  for (std::size_t half = 0; half < 2; ++half) {
+    Half sum;
+    sum.clear();
+    for (std::size_t q = 2 * half; q < 2 * half + 2; ++q) {
+      const Point& x = cell.points[q];
+      const Vec3 dh(-x.cos, -x.sin, 0.0);
+      const double D = open ? 0.0 : depth[q];
+      const double h = 1.0 - in_.e.x() * x.cos - in_.e.y() * x.sin + D / in_.clearance;
+      const double cube = h * h * h;
+      double along = 1.0, across = 1.0, wall = 1.0, d_along = 0.0, d_across = 0.0, d_wall = 0.0;
+      if (in_.reynolds > 0.0) {
+        const TurbulentFactors<Dual<1>> f(Dual<1>::variable(in_.reynolds * h, 0));
+        along = f.along.v;
+        across = f.across.v;
+        wall = f.shear.v;
+        d_along = f.along.g[0];
+        d_across = f.across.g[0];
+        d_wall = f.shear.g[0];
+      }
+      const double r = x.weight * along / cube;
+      sum.r += r;
+      sum.s += D * r;
+      sum.square += D * D * r;
+      section.g += x.weight * cube / across;
+      if (!open) shear_ += share * x.weight * wall / h;
+      if (!slopes_) continue;
+      Vec3 d_arg = in_.reynolds * dh;  // of reynolds h
+      d_arg[2] = h;
+      const Vec3 dr = x.weight / cube * (d_along * d_arg - 3.0 * along / h * dh);
+      sum.dr += dr;
+      sum.ds += D * dr;
+      sum.dsquare += D * D * dr;
+      section.dg +=
+          x.weight * (3.0 * h * h / across * dh - cube * d_across / (across * across) * d_arg);
+      if (!open) dshear_ += share * x.weight / h * (d_wall * d_arg - wall / h * dh);
+    }
+    half_cells_[(2 * i + half) * bands_ + g] = sum;
+  }
+  sections_[i * bands_ + g] = section;
+}
+
+void GridPad::Solver::number_columns() {
+  for (std::size_t i = 0; i < n_; ++i)
+    place_[i] = !pad_.round_ ? i : 2 * i < n_ ? 2 * i : 2 * (n_ - 1 - i) + 1;
+}
+
+void GridPad::Solver::add_conductances() {
+  for (std::size_t f = 0; f < faces(); ++f) {
+    std::array<double, most_bands> own;
+    for (std::size_t g = 0; g < bands_; ++g)
+      own[g] = 1.0 / face(f, g).r;
+    for (std::size_t j = 0; j < m_; ++j) {
+      double sum = 0.0;
+      for (const Piece& x : pieces(j))
+        sum += x.share * own[x.band];
+      along_[f * m_ + j] = sum;
+    }
+  }
+}
+
+/// link(k, l, conductance, before, behind) for all pairs k, l of nodes that touch; along the arc with
+/// the nodes before k and behind l. Either may be `groove`, l `side`.
+template <class Link>
+void GridPad::Solver::for_each_link(const Link& link) const {
+  for (std::size_t f = 0; f < faces(); ++f) {
+    const std::size_t l = left_of(f), r = right_of(f);
+    const std::size_t before = l == groove ? groove : left_of(l);
+    const std::size_t behind = r == groove ? groove : right_of(pad_.round_ ? (r + 1) % n_ : r + 1);
+    for (std::size_t j = 0; j < m_; ++j)
+      link(node(l, j), node(r, j), along_[f * m_ + j], node(before, j), node(behind, j));
+  }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (const Across& x : pad_.across_)
+      link(at(i, x.from), far_node(i, x), x.conductance * sections_[i * bands_ + x.band].g, groove,
+           groove);
+}
+
+void GridPad::Solver::add_sources() {
+  for (auto& B : B_)
+    std::fill_n(B.begin(), size_, 0.0);
+  std::fill_n(open_.begin(), size_, static_cast<unsigned char>(0));
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j)
+      for (const Piece& x : pieces(j)) {
+        const std::size_t k = at(i, j);
+        B_[0][k] += x.share * pad_.cells_[i].normal.x();
+        B_[1][k] += x.share * pad_.cells_[i].normal.y();
+        if (pad_.open(i, x.band)) open_[k] = 1;
+      }
+  for (std::size_t f = 0; f < faces(); ++f)
+    for (std::size_t g = 0; g < bands_; ++g) {
+      const Stretch x = face(f, g);
+      if (x.s == 0.0) continue;
+      for (std::size_t j = 0; j < m_; ++j)
+        for (const Piece& piece : pieces(j)) {
+          if (piece.band != g) continue;
+          const double carried = piece.share * x.s / x.r;
+          if (left_of(f) != groove) B_[2][at(left_of(f), j)] -= carried;
+          if (right_of(f) != groove) B_[2][at(right_of(f), j)] += carried;
+        }
+    }
+  for (std::size_t k = 0; k < size_; ++k)
+    b_[k] = B_[0][k] * in_.source[0] + B_[1][k] * in_.source[1] + B_[2][k] * in_.source[2];
+  const auto level = [&](std::size_t k) { return k == side ? 0.0 : in_.edge; };
+  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    if (known(k) && !known(l)) b_[l] += by * level(k);
+    if (known(l) && !known(k)) b_[k] += by * level(l);
+  });
+}
+
+void GridPad::Solver::couple(std::size_t k, std::size_t l, double by) {
+  if (wet(k)) entry(k, k) += by;
+  if (wet(l)) entry(l, l) += by;
+  if (!wet(k) || !wet(l)) return;
+  entry(k, l) -= by;
+  entry(l, k) -= by;
+}
+
+/// Distance from a node with film, the last one, to where the film ends, over that of the nodes.
+/// Pressures of the grid there are P(k) = P(0) (k + 1) + a k (k + 1)/2, k nodes away: a parabola about
+/// the place 1/2 + P(0)/a beyond.
+double GridPad::Solver::to_front(std::size_t before, std::size_t last) const {
+  if (before >= side || !film_[before]) return 1.0;
+  const double curvature = P_[before] - 2.0 * P_[last];
+  return curvature > P_[last] ? 0.5 + P_[last] / curvature : 1.5;
+}
+
+/// The matrix of the nodes with film in two triangles; dry nodes and open recesses stand apart.
+void GridPad::Solver::factor() {
+  for (std::size_t k = 0; k < size_; ++k) {
+    if (!film_[k]) {
+      entry(k, k) = 1.0;
+      continue;
+    }
+    const double inverse = 1.0 / entry(k, k);
+    const std::size_t end = std::min(size_, k + half_ + 1);
+    const double* pivot = &entry(k, k);
+    for (std::size_t i = k + 1; i < end; ++i) {
+      double* row = &entry(i, k);
+      if (row[0] == 0.0) continue;
+      const double by = row[0] *= inverse;
+      for (std::size_t c = 1; c < end - k; ++c)
+        row[c] -= by * pivot[c];
+    }
+  }
+}
+
+void GridPad::Solver::solve(double* x) const {
+  for (std::size_t k = 0; k < size_; ++k) {
+    const std::size_t from = k > half_ ? k - half_ : 0;
+    const double* row = &a_[k * (2 * half_ + 1) + half_ - (k - from)];
+    double sum = x[k];
+    for (std::size_t c = from; c < k; ++c)
+      sum -= row[c - from] * x[c];
+    x[k] = sum;
+  }
+  for (std::size_t k = size_; k-- > 0;) {
+    const std::size_t end = std::min(size_, k + half_ + 1);
+    const double* row = &a_[k * (2 * half_ + 1) + half_];
+    double sum = x[k];
+    for (std::size_t c = k + 1; c < end; ++c)
+      sum -= row[c - k] * x[c];
+    x[k] = sum / row[0];
+  }
+}
+
+void GridPad::Solver::solve_transposed(double* x) const {
+  for (std::size_t k = 0; k < size_; ++k) {
+    const std::size_t end = std::min(size_, k + half_ + 1);
+    const double* row = &a_[k * (2 * half_ + 1) + half_];
+    const double own = x[k] /= row[0];
+    for (std::size_t c = k + 1; c < end; ++c)
+      x[c] -= row[c - k] * own;
+  }
+  for (std::size_t k = size_; k-- > 0;) {
+    const std::size_t from = k > half_ ? k - half_ : 0;
+    const double* row = &a_[k * (2 * half_ + 1) + half_ - (k - from)];
+    const double own = x[k];
+    for (std::size_t c = from; c < k; ++c)
+      x[c] -= row[c - from] * own;
+  }
+}
+
+/// Film where the pressures found are positive, and where a dry node would have to swallow more than
+/// `least`. False: nothing changed.
+bool GridPad::Solver::take_film(double least, bool may_form) {
+  std::copy_n(b_.begin(), size_, inflow_.begin());
+  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    if (known(k) || known(l)) return;
+    if (film_[l]) inflow_[k] += by * P_[l];
+    if (film_[k]) inflow_[l] += by * P_[k];
+  });
+  bool changed = false;
+  for (std::size_t k = 0; k < size_; ++k) {
+    if (open_[k]) continue;
+    const unsigned char now = film_[k] ? P_[k] > 0.0 : may_form && inflow_[k] > least;
+    changed = changed || now != film_[k];
+    film_[k] = now;
+  }
+  return changed;
+}
+
+void GridPad::Solver::find_film() {
+  // Quadratic elements spoil the sign of one coupling in eight: should the film not settle for that, it
+  // may only shrink from some pass on.
+  constexpr int most_passes = 200, free_passes = 60;
+  constexpr double rounding = 1e-13;  // of the largest source
+  double size = 0.0;
+  for (std::size_t k = 0; k < size_; ++k) {
+    film_[k] = open_[k] ? 0 : 1;
+    size = std::max(size, std::abs(b_[k]));
+  }
+  for (int pass = 0; pass < most_passes; ++pass) {
+    clear_matrix();
+    for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+      couple(k, l, by);
+    });
+    factor();
+    for (std::size_t k = 0; k < size_; ++k)
+      P_[k] = film_[k] ? b_[k] : open_[k] ? in_.edge : 0.0;
+    solve(P_.data());
+    if (!take_film(rounding * size, pass < free_passes)) return;
+  }
+  P_[0] = nan;  // never seen; without a film that settles there is no force
+}
+
+void GridPad::Solver::loads(GridLoad& out) const {
+  out = {};
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j)
+      for (const Piece& x : pieces(j))
+        out.z.head<2>() += x.share * (P_[at(i, j)] - in_.edge) * pad_.cells_[i].normal;
+  for (const Cell& cell : pad_.cells_) {
+    out.z.head<2>() -= pad_.side_share_ * in_.edge * cell.normal;  // nothing stands at the side
+    out.normal += in_.source.head<2>().dot(cell.normal);
+  }
+  for (std::size_t f = 0; f < faces(); ++f)
+    for (std::size_t g = 0; g < bands_; ++g) {
+      const std::size_t l = left_of(f), r = right_of(f);
+      const Stretch x = face(f, g);
+      if (x.s == 0.0) continue;
+      // int D P' with P' = (S D - q)/(a h^3)
+      const double spread = in_.source[2] * (x.square - x.s * x.s / x.r);
+      for (std::size_t j = 0; j < m_; ++j)
+        for (const Piece& piece : pieces(j)) {
+          if (piece.band != g) continue;
+          const double along = piece.share * x.s / x.r;
+          out.z[2] += along * (pressure(node(r, j)) - pressure(node(l, j))) + piece.share * spread;
+          if (l == groove) out.normal += along * in_.source[2];
+          if (r == groove) out.normal -= along * in_.source[2];
+        }
+    }
+  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    if (l == side) return;
+    if (known(k) && !known(l)) out.fed += by * (pressure(k) - pressure(l));
+    if (known(l) && !known(k)) out.fed += by * (pressure(l) - pressure(k));
+  });
+  out.shear = shear_;
+}
+
+void GridPad::Solver::slopes(GridSlopes& out) {
+  out = {};
+  // a change of the pressure is none where the film ends: between two nodes
+  clear_matrix();
+  for_each_link(
+      [&](std::size_t k, std::size_t l, double by, std::size_t before, std::size_t behind) {
+        if (wet(k) && !known(l) && !wet(l)) by /= to_front(before, k);
+        if (wet(l) && !known(k) && !wet(k)) by /= to_front(behind, l);
+        couple(k, l, by);
+      });
+  factor();
+  const auto lambda = [&](int k) { return lambda_.data() + static_cast<std::size_t>(k) * most; };
+  for (int k = 0; k < 3; ++k) {
+    double* x = lambda(k);
+    for (std::size_t c = 0; c < size_; ++c)
+      x[c] = film_[c] ? B_[static_cast<std::size_t>(k)][c] : 0.0;
+    solve_transposed(x);
+    for (int l = 0; l < 3; ++l)
+      for (std::size_t c = 0; c < size_; ++c)
+        if (film_[c]) out.by_source(k, l) += x[c] * B_[static_cast<std::size_t>(l)][c];
+  }
+  Matrix<3, 3> by = Matrix<3, 3>::Zero();  // rows: loads, columns: e and reynolds
+  const auto value = [&](int k, std::size_t c) { return c >= side ? 0.0 : lambda(k)[c]; };
+  const double S = in_.source[2];
+  for (std::size_t f = 0; f < faces(); ++f)
+    for (std::size_t g = 0; g < bands_; ++g) {
+      const Stretch x = face(f, g);
+      const double mean = x.s / x.r;
+      const Vec3 dmean = x.ds - mean * x.dr;
+      const Vec3 dspread = x.dsquare - 2.0 * mean * x.ds + mean * mean * x.dr;
+      for (std::size_t j = 0; j < m_; ++j)
+        for (const Piece& piece : pieces(j)) {
+          if (piece.band != g) continue;
+          const std::size_t l = node(left_of(f), j), r = node(right_of(f), j);
+          const double step = pressure(r) - pressure(l), q = (S * x.s - step) / x.r;
+          const Vec3 dq = piece.share / x.r * (S * x.ds - q * x.dr);
+          for (int k = 0; k < 3; ++k)
+            by.row(k) += (value(k, r) - value(k, l)) * dq.transpose();
+          by.row(2) += piece.share * (step / x.r * dmean + S * dspread).transpose();
+          out.by_source(2, 2) += piece.share * (x.square - mean * x.s);
+        }
+    }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (const Across& x : pad_.across_) {
+      const std::size_t k = at(i, x.from), l = far_node(i, x);
+      const Vec3 dq =
+          (pressure(k) - pressure(l)) * x.conductance * sections_[i * bands_ + x.band].dg;
+      for (int row = 0; row < 3; ++row)
+        by.row(row) += (value(row, l) - value(row, k)) * dq.transpose();
+    }
+  out.by_e = by.leftCols<2>();
+  out.by_reynolds = by.col(2);
+  out.shear_by_e = dshear_.head<2>();
+  out.shear_by_reynolds = dshear_[2];
+}
+
+GridField GridPad::Solver::field() const {
+  GridField out;
+  out.thinnest = infinity;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Cell& cell = pad_.cells_[i];
+    double mean = 0.0;
+    bool any = false;
+    for (std::size_t j = 0; j < m_; ++j) {
+      const double P = P_[at(i, j)];
+      for (const Piece& x : pieces(j))
+        mean += x.share * P;
+      any = any || P > 0.0;
+      if (P <= out.highest) continue;
+      out.highest = P;
+      out.highest_at = 0.5 * (cell.from + cell.to);
+    }
+    out.place.push_back(0.5 * (cell.from + cell.to));
+    out.mean.push_back(mean);
+    out.middle.push_back(P_[at(i, 0)]);
+    out.wet.push_back(any ? 1 : 0);
+    bool shown = false;
+    for (std::size_t g = 0; g < bands_; ++g) {
+      if (pad_.open(i, g)) continue;
+      double thickness = 0.0;
+      for (std::size_t q = 0; q < 4; ++q) {
+        const Point& x = cell.points[q];
+        const double h =
+            1.0 - in_.e.x() * x.cos - in_.e.y() * x.sin + pad_.depth(i, g)[q] / in_.clearance;
+        thickness += 0.25 * h;
+        if (h >= out.thinnest) continue;
+        out.thinnest = h;
+        out.thinnest_at = cell.from + (static_cast<double>(q) + 0.5) / 4.0 * (cell.to - cell.from);
+      }
+      if (!shown) out.thickness.push_back(thickness);
+      shown = true;
+    }
+    if (!shown) out.thickness.push_back(0.0);
+  }
+  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    const double q = by * (pressure(k) - pressure(l));
+    if (l == side) out.side += q;
+    if (k >= side || l >= side) return;
+    if (open_[l] && !open_[k]) out.into_open += q;
+    if (open_[k] && !open_[l]) out.into_open -= q;
+  });
+  add_flow(out);
+  return out;
+}
+
+/// Flow past every face. Where no film is, a row carries what left the film before it, or what the next
+/// one begins with.
+void GridPad::Solver::add_flow(GridField& out) const {
+  const double S = in_.source[2];
+  const bool forward = S >= 0.0;
+  out.flow.assign(n_ + 1, 0.0);
+  for (std::size_t f = 0; f <= n_; ++f)
+    out.face_place.push_back(f < n_ ? pad_.cells_[f].from : pad_.cells_[n_ - 1].to);
+  // at the side itself nothing but what is dragged
+  for (std::size_t f = 0; f <= n_; ++f) {
+    const std::size_t own = pad_.round_ && f == n_ ? 0 : f;
+    const Stretch x = face(own, bands_ - 1);
+    const double angle = pad_.start_ + out.face_place[f];
+    const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
+    out.flow[f] = pad_.side_share_ * S * (in_.clearance * circle + x.s / x.r);
+  }
+  out.side += out.flow.front() - out.flow.back();
+  std::array<double, most_columns + 1> flow;
+  for (std::size_t j = 0; j < m_; ++j)
+    for (const Piece& piece : pieces(j)) {
+      double now = nan, least = infinity;
+      for (std::size_t step = 0; step <= n_; ++step) {
+        const std::size_t f = forward ? step : n_ - step, own = pad_.round_ && f == n_ ? 0 : f;
+        const std::size_t l = node(left_of(own), j), r = node(right_of(own), j);
+        const double angle = pad_.start_ + out.face_place[f];
+        const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
+        const Stretch x = face(own, piece.band);
+        const bool in_track = (l < side && open_[l]) || (r < side && open_[r]);
+        const double dragged = S * (in_.clearance * circle + x.s / x.r);
+        if (!in_track && std::abs(dragged) < std::abs(least)) least = dragged;
+        if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0))
+          now = dragged - (pressure(r) - pressure(l)) / x.r;
+        flow[f] = now;
+      }
+      // a row without film; all of it a track: no film at all
+      double next = std::isfinite(least) ? least : 0.0;
+      for (std::size_t step = n_ + 1; step-- > 0;) {
+        const std::size_t f = forward ? step : n_ - step;
+        if (std::isnan(flow[f])) flow[f] = next;
+        next = flow[f];
+        out.flow[f] += piece.share * flow[f];
+      }
+    }
+}
+
+void GridPad::load(const GridDrive& in, GridLoad& out) const {
+  const Solver solver(*this, in, false);
+  solver.loads(out);
+}
+
+void GridPad::load(const GridDrive& in, GridLoad& out, GridSlopes& slopes) const {
+  Solver solver(*this, in, true);
+  solver.loads(out);
+  solver.slopes(slopes);
+}
+
+GridField GridPad::field(const GridDrive& in) const {
+  const Solver solver(*this, in, false);
+  return solver.field();
+}
+
+}  // namespace whirl::elements

@@ -1,0 +1,138 @@
+// The film of one pad on a grid in both directions: what FiniteJournal adds up where its surface, or
+// its pressure, is not one profile along the axis.
+//
+// As pad_film.hpp, but without a profile: clearance h = 1 - e.n(theta) + d(theta, zeta), zeta = z/L,
+// d = depth/clearance of recesses (tapers, pockets of pressure dams, relief tracks) that are
+// symmetric about the middle of the length. With the pressure unit 12 eta (R/c)^2/c
+//   d/dtheta (S D - a_x h^3 P_theta) - (R/L)^2 d/dzeta (a_z h^3 P_zeta) = W.n  where P > 0,  P >= 0,
+// D the depth in m, S = slip/2: the oil that a recess holds is carried along with half the speed of
+// the surface. a_x, a_z: 1/f of turbulence.hpp.
+//
+// Over half the length, finite volumes along the arc and quadratic elements along the axis. Along the
+// arc the flow between two neighbours is the exact one
+// of a film whose thickness varies between them, q = (S int D/h^3 - dP)/int 1/h^3 (A. A. Samarskii,
+// The Theory of Difference Schemes, 2001, doi 10.1201/9780203908518, ch. 3): a step in the surface lies
+// on a face and costs no accuracy. Along the axis a parabola is exact, and the edges of recesses are
+// edges of elements. The
+// complementarity problem is solved by policy iteration, which ends at its one solution where the
+// matrix is an M-matrix (O. Bokanowski, S. Maroso, H. Zidani, SIAM J. Numer. Anal. 47, 2009, doi
+// 10.1137/08073041X). Derivatives by the adjoint equation, to rounding where the film is full. Where it
+// ruptures they are those of a film whose front lies inside a cell, found from the pressures before
+// it, which is ten times closer to the truth than slopes of the discrete loads: those jump by some
+// 1e-2 as cells dry, the loads themselves by less than 1e-3.
+//
+// With N = (W_y, W_z, S) and B the source of each, loads are z = B^T P: the force over (unit R L), and
+// the moment of pressure on the steps and slopes of recesses over (-unit R L/2).
+#pragma once
+#include <core/types.hpp>
+#include <memory>
+#include <vector>
+
+namespace whirl::elements {
+
+/// A recess of a pad, in the middle of the length; its depth goes linearly along the arc.
+struct Recess {
+  double from = 0, to = 0;              ///< rad from the start of the pad
+  double depth_from = 0, depth_to = 0;  ///< m, there
+  double width = 1;                     ///< of the length of the bearing, in (0, 1]
+  bool open = false;  ///< so deep that it stands at the pressure of the grooves: a relief track
+};
+
+/// What drives the film of a pad, in the units above.
+struct GridDrive {
+  Vec2 e = Vec2::Zero();       ///< eccentricity from the pad's centre, over its clearance
+  Vec3 source = Vec3::Zero();  ///< W in m/s, S in rad/s
+  double clearance = 1;        ///< c, m
+  double reynolds = 0;         ///< of a film of thickness c; 0: laminar
+  double edge = 0;             ///< pressure at the ends of the pad and in open recesses
+};
+
+struct GridLoad {
+  Vec3 z = Vec3::Zero();  ///< loads; of the pressure over that of the edge
+  double fed = 0;         ///< flow that the pressure of the edge drives in
+  double normal = 0;      ///< what the sources bring where the pressure is that of the edge
+  double shear = 0;       ///< int int f_s/h dtheta dzeta
+};
+struct GridSlopes {
+  Matrix<3, 3> by_source = Matrix<3, 3>::Zero();
+  Matrix<3, 2> by_e = Matrix<3, 2>::Zero();
+  Vec3 by_reynolds = Vec3::Zero();
+  Vec2 shear_by_e = Vec2::Zero();
+  double shear_by_reynolds = 0;
+};
+
+/// Pressures and flows on the grid, for results.
+struct GridField {
+  std::vector<double> place;             ///< of the columns: rad from the start of the pad
+  std::vector<double> mean, middle;      ///< P: mean along the axis, and at its middle
+  std::vector<double> thickness;         ///< h at the middle, or beside an open recess there
+  std::vector<unsigned char> wet;        ///< film somewhere along the axis
+  std::vector<double> face_place, flow;  ///< of the faces between them: mean of q over the length
+  double side = 0, into_open = 0;        ///< flow out at both sides, and into open recesses
+  double thinnest = 0, thinnest_at = 0;  ///< h, and where
+  double highest = 0, highest_at = 0;    ///< P anywhere, and where
+};
+
+class GridPad {
+ public:
+  static constexpr int most_columns = 480, most_rows = 16, most_even_rows = 10;
+  static constexpr int most_bands = 3;  ///< stretches of the length, recesses of as many widths
+  /// start, arc: rad; round: a whole circle without ends. ratio: R/L. columns: along the arc, rows:
+  /// along half the length; beside recesses there are some more.
+  /// @pre 0 < arc <= 2 pi; 8 <= columns <= most_columns and 2 <= rows <= most_even_rows.
+  /// @throws Error E84: recesses beyond the pad, overlapping, of negative depth or impossible width, or
+  /// too many of them for the grid.
+  GridPad(double start, double arc, bool round, double ratio, int columns, int rows,
+          const std::vector<Recess>& recesses);
+
+  /// @pre 1 - e.n > 0 on the pad.
+  void load(const GridDrive& in, GridLoad& out) const;
+  void load(const GridDrive& in, GridLoad& out, GridSlopes& slopes) const;
+  GridField field(const GridDrive& in) const;
+  /// Cells along the arc and nodes along half the length, as they came out.
+  int columns() const { return static_cast<int>(cells_.size()); }
+  int rows() const { return static_cast<int>(rows_.size()); }
+
+ private:
+  struct Point {
+    double cos, sin, weight;
+  };
+  struct Cell {
+    double from, to;  ///< rad from the start
+    Vec2 normal;      ///< int n dtheta
+    Point points[4];  ///< two in each half
+  };
+  /// Of a row of nodes along the arc: its part in a band of equal depth along the axis, as a share of
+  /// the length. A row at the edge of a recess has one in either band.
+  struct Piece {
+    std::size_t band;
+    double share;
+  };
+  struct Row {
+    std::vector<Piece> pieces;
+  };
+  /// Between two rows; to one more than there are: the side. For a unit of int a h^3 dtheta.
+  struct Across {
+    std::size_t from, to, band;
+    double conductance;
+  };
+  void add_rows(const std::vector<double>& elements, const std::vector<double>& widths);
+  /// Depth at the points of cell i in band g, m.
+  const std::array<double, 4>& depth(std::size_t i, std::size_t g) const {
+    return depth_[i * bands_ + g];
+  }
+  bool open(std::size_t i, std::size_t g) const { return open_[i * bands_ + g] != 0; }
+  class Solver;
+
+  double start_, arc_, ratio_;
+  bool round_;
+  std::size_t bands_ = 1;
+  std::vector<Cell> cells_;
+  std::vector<Row> rows_;
+  std::vector<Across> across_;
+  double side_share_ = 0;  ///< of the length that the nodes at the side stand for
+  std::vector<std::array<double, 4>> depth_;
+  std::vector<unsigned char> open_;
+};
+
+}  // namespace whirl::elements

@@ -1,0 +1,314 @@
+// Journals whose surface has recesses, or whose film is solved along the axis too: limits that other
+// shapes have, mirror images, what a pressure dam is for, small motions in time, refusals.
+#include "deck_run.hpp"
+
+#include <core/types.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace {
+
+using whirl::Mat2;
+using whirl::Vec2;
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+const std::string film = R"(type = "journal"
+diameter = "100 mm"
+length = "70 mm"
+clearance = "100 um"
+viscosity = "20 mPa.s"
+)";
+const std::string dam = R"(shape = "pressure_dam"
+dam_arc = "125 deg"
+dam_depth = "200 um"
+dam_width = "50 mm"
+relief_width = "15 mm"
+)";
+const std::string taper = R"(shape = "tapered_land"
+lands = 3
+groove = "20 deg"
+land_at = "-90 deg"
+taper_arc = "60 deg"
+taper_depth = "80 um"
+)";
+
+/// A rigid rotor of 2 kN on two bearings.
+std::string rotor(const std::string& bearing, const std::string& steps) {
+  std::string text = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "rotor"
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "mass"
+at = "body:mid"
+mass = "200 kg"
+Ip = "1 kg.m^2"
+Id = "10 kg.m^2"
+[[load]]
+at = "body:mid"
+force = ["0 N", "0 N", "-2000 N"]
+[[bearing]]
+name = "thrust"
+at = "body:start"
+type = "linear"
+kxx = "1e8 N/m"
+)";
+  for (const char* at : {"start", "end"})
+    text += fmt::format("[[bearing]]\nname = \"{0}\"\nat = \"body:{0}\"\n{1}", at, bearing);
+  return text + steps + "[output]\nreport = false\n";
+}
+
+struct Film {
+  Vec2 place = Vec2::Zero();
+  Mat2 K = Mat2::Zero(), C = Mat2::Zero();
+  double grid = 0, axial = 0;
+  std::string log;
+};
+
+/// What its static step says of a bearing.
+Film film_of(const std::string& bearing, const char* speed = "3000 rpm") {
+  const DeckRun d(rotor(bearing, fmt::format("[[step]]\nname = \"films\"\ntype = \"static\"\n"
+                                             "speed = \"{}\"\n",
+                                             speed)));
+  EXPECT_EQ(d.exit, 0) << d.log;
+  Film f;
+  f.log = d.log;
+  if (d.exit != 0) return f;
+  const Columns c = d.csv("films_coefficients.csv");
+  const auto of = [&](const std::string& name) { return c.rows.at(0).at(c.column(name)); };
+  f.place << of("y [m]"), of("z [m]");
+  f.K << of("kyy [N/m]"), of("kyz [N/m]"), of("kzy [N/m]"), of("kzz [N/m]");
+  f.C << of("cyy [N s/m]"), of("cyz [N s/m]"), of("czy [N s/m]"), of("czz [N s/m]");
+  f.grid = of("grid error [-]");
+  f.axial = of("axial error [-]");
+  return f;
+}
+
+double apart(const Film& a, const Film& b) {
+  return std::max({(a.place - b.place).norm() / b.place.norm(), (a.K - b.K).norm() / b.K.norm(),
+                   (a.C - b.C).norm() / b.C.norm()});
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST(RecessedJournals, ShallowRecessesAreNone) {
+  const Film cylinder = film_of(film + "shape = \"two_grooves\"\naxial_grid = 6\n");
+  std::string shallow = with(dam, "dam_depth = \"200 um\"", "dam_depth = \"0.001 um\"");
+  shallow = with(shallow, "relief_width = \"15 mm\"\n", "");
+  EXPECT_LT(apart(film_of(film + shallow), cylinder), 5e-3);
+  const Film lobes = film_of(film +
+                             "shape = \"lobes\"\nlobes = 3\nlobe_at = \"-90 deg\"\n"
+                             "groove = \"20 deg\"\naxial_grid = 6\n");
+  EXPECT_LT(apart(film_of(film + with(taper, "80 um", "0.001 um")), lobes), 5e-3);
+  // preload: two lobes
+  const Film lemon = film_of(film +
+                             "shape = \"lobes\"\nlobes = 2\nlobe_at = \"90 deg\"\npreload = 0.4\n"
+                             "axial_grid = 6\n");
+  EXPECT_LT(apart(film_of(film + shallow + "preload = 0.4\n"), lemon), 5e-3);
+}
+
+TEST(RecessedJournals, TheAxialErrorIsWhatTheGridFinds) {
+  for (const std::string& shape : {std::string("shape = \"two_grooves\"\n"),
+                                   std::string("shape = \"lobes\"\npreload = 0.5\n")}) {
+    const Film profile = film_of(film + shape), grid = film_of(film + shape + "axial_grid = 6\n");
+    EXPECT_GT(profile.axial, 5e-4);
+    EXPECT_LT(profile.axial, 2e-2);
+    EXPECT_LT(profile.grid, 1e-4);
+    EXPECT_TRUE(std::isnan(grid.axial));
+    EXPECT_LT(grid.grid, 5e-3);
+    // at the same load rather than at the same place
+    EXPECT_LT(apart(profile, grid), 3 * profile.axial + grid.grid);
+    EXPECT_NE(profile.log.find("(axial profile of the film; its grid"), std::string::npos)
+        << profile.log;
+    EXPECT_NE(grid.log.find("(film grid)"), std::string::npos) << grid.log;
+  }
+  // and of pads
+  const std::string pads = with(film, "\"journal\"", "\"tilting_pad\"") + "preload = 0.3\n";
+  const Film profile = film_of(pads), grid = film_of(pads + "axial_grid = 6\n");
+  EXPECT_GT(profile.axial, 1e-3);
+  EXPECT_LT(apart(profile, grid), 3 * profile.axial + grid.grid);
+  EXPECT_TRUE(std::isnan(grid.axial));
+}
+
+TEST(RecessedJournals, GridAndRowsAreThoseOfTheDeck) {
+  const Film own = film_of(film + dam), coarse = film_of(film + dam + "grid = 60\n"),
+             rows = film_of(film + taper + "axial_grid = 3\n"), six = film_of(film + taper);
+  EXPECT_GT(coarse.grid, own.grid);
+  EXPECT_LT(own.grid, 5e-3);
+  EXPECT_LT(apart(coarse, own), coarse.grid + 2e-2);
+  EXPECT_GT(apart(rows, six), 1e-6);
+  EXPECT_LT(apart(rows, six), 1e-2);
+}
+
+TEST(RecessedJournals, AShaftThatTurnsTheOtherWayIsTheMirrorImage) {
+  for (const std::string& shape : {dam, taper}) {
+    const Film a = film_of(film + shape),
+               b = film_of(film + shape + "leading = \"end\"\n", "-3000 rpm");
+    const Mat2 mirror = Eigen::Vector2d(-1, 1).asDiagonal();
+    EXPECT_LT((a.place - mirror * b.place).norm(), 1e-7 * a.place.norm());
+    EXPECT_LT((a.K - mirror * b.K * mirror).norm(), 1e-6 * a.K.norm());
+    EXPECT_LT((a.C - mirror * b.C * mirror).norm(), 1e-6 * a.C.norm());
+    // the wrong way round the recess is another one
+    EXPECT_GT(apart(film_of(film + shape, "-3000 rpm"), b), 0.05);
+  }
+}
+
+TEST(RecessedJournals, TheyTurnWithTheirGroovesAndTheLoad) {
+  const auto turned = [&](const std::string& bearing, const char* force) {
+    const DeckRun d(with(rotor(bearing,
+                               "[[step]]\nname = \"films\"\ntype = \"static\"\n"
+                               "speed = \"3000 rpm\"\n"),
+                         "\"0 N\", \"0 N\", \"-2000 N\"", force));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    const Columns c = d.csv("films_coefficients.csv");
+    return Vec2(c.rows.at(0).at(c.column("y [m]")), c.rows.at(0).at(c.column("z [m]")));
+  };
+  const char *down = "\"0 N\", \"0 N\", \"-2000 N\"", *along = "\"0 N\", \"2000 N\", \"0 N\"";
+  const auto quarter = [](const Vec2& x) { return Vec2(-x.y(), x.x()); };
+  const Vec2 a = turned(film + dam, down),
+             b = turned(film + dam + "groove_at = \"90 deg\"\n", along);
+  EXPECT_LT((quarter(a) - b).norm(), 1e-6 * a.norm());
+  const Vec2 p = turned(film + taper, down), q = turned(film + with(taper, "-90", "0"), along);
+  EXPECT_LT((quarter(p) - q).norm(), 1e-6 * p.norm());
+}
+
+TEST(RecessedJournals, WidthsAndArcsDoWhatTheyAreFor) {
+  const auto depth = [](const Film& f) { return f.place.norm(); };
+  const Film own = film_of(film + dam);
+  // the track takes bearing surface away, and the dam presses down: both lay the journal lower
+  EXPECT_GT(depth(own), 1.02 * depth(film_of(film + with(dam, "relief_width = \"15 mm\"\n", ""))));
+  EXPECT_GT(depth(own), 1.02 * depth(film_of(film + with(dam, "\"50 mm\"", "\"20 mm\""))));
+  EXPECT_GT(apart(film_of(film + with(dam, "125 deg", "60 deg")), own), 0.02);
+  EXPECT_GT(apart(film_of(film + dam + "groove = \"40 deg\"\n"), own), 0.02);
+  // a taper of the whole length is that without a width, a narrow one carries otherwise
+  const Film land = film_of(film + taper);
+  EXPECT_LT(apart(film_of(film + taper + "taper_width = \"70 mm\"\n"), land), 1e-12);
+  EXPECT_GT(apart(film_of(film + taper + "taper_width = \"40 mm\"\n"), land), 0.02);
+  EXPECT_GT(apart(film_of(film + with(taper, "60 deg", "30 deg")), land), 0.02);
+  EXPECT_GT(apart(film_of(film + with(taper, "lands = 3", "lands = 4")), land), 0.05);
+  EXPECT_GT(apart(film_of(film + with(taper, "\"20 deg\"", "\"40 deg\"")), land), 0.02);
+}
+
+TEST(RecessedJournals, GroovesAnywhere) {
+  const Film two = film_of(film + "shape = \"two_grooves\"\ngroove_at = \"30 deg\"\n");
+  const Film same = film_of(film + R"(shape = "grooves"
+axial_groove = [{ at = "210 deg" }, { at = "30 deg", width = "20 deg" }]
+)");
+  EXPECT_LT(apart(same, two), 1e-9);
+  // one groove where the film has ruptured is none, one in the loaded film takes half its load
+  const Film plain = film_of(film + "shape = \"plain\"\n");
+  const auto one = [&](const char* at) {
+    return film_of(film +
+                   fmt::format("shape = \"grooves\"\naxial_groove = [{{ at = \"{}\" }}]\n", at));
+  };
+  EXPECT_LT(apart(one("90 deg"), plain), 1e-5);
+  EXPECT_GT(one("-80 deg").place.norm(), 1.5 * plain.place.norm());
+}
+
+TEST(RecessedJournals, APressureDamHoldsALightRotor) {
+  // what it is built for (J. C. Nicholas, P. E. Allaire, ASLE Trans. 23 (1980) 197): onset of whirl
+  const auto onset = [&](const std::string& bearing) {
+    const DeckRun d(rotor(bearing,
+                          "[[step]]\nname = \"st\"\ntype = \"stability\"\n"
+                          "speed = { start = \"1000 rpm\", stop = \"15000 rpm\", "
+                          "points = 15 }\n"));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    const Columns c = d.csv("st_onset.csv");
+    return c.rows.empty() ? 1e9 : c.rows.at(0).at(0);
+  };
+  const double grooves = onset(film + "shape = \"two_grooves\"\n"), held = onset(film + dam);
+  EXPECT_LT(grooves, 8000);
+  EXPECT_GT(held, 1.3 * grooves);
+}
+
+TEST(RecessedJournals, SmallMotionsInTimeAreTheResponse) {
+  const DeckRun d(rotor(film + dam, R"([[unbalance]]
+at = "mass"
+amount = "300 g.mm"
+[[probe]]
+name = "p"
+at = "mass"
+[[drive]]
+at = "body:start"
+type = "speed"
+speed = "4000 rpm"
+[[step]]
+name = "response"
+type = "unbalance_response"
+speed = { values = ["4000 rpm"] }
+[[step]]
+name = "run"
+type = "transient"
+start = "unbalance_response"
+duration = "0.03 s"
+)"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns response = d.csv("response_response.csv"), run = d.csv("run.csv");
+  const std::size_t y = run.column("p.y [m]");
+  double low = 1, high = -1;
+  for (const std::vector<double>& row : run.rows) {
+    if (row[0] < 0.015) continue;
+    low = std::min(low, row[y]);
+    high = std::max(high, row[y]);
+  }
+  const double amplitude = response.rows.at(0).at(response.column("p y amplitude [m]"));
+  EXPECT_NEAR(0.5 * (high - low), amplitude, 1e-2 * amplitude);
+}
+
+TEST(RecessedJournals, FilmsAndTheirFlows) {
+  const DeckRun d(rotor(film + taper + "supply_pressure = \"20 bar\"\n",
+                        "[[step]]\nname = \"films\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns c = d.csv("films_films.csv");
+  const auto of = [&](const std::vector<double>& row, const char* name) {
+    return row.at(c.column(name));
+  };
+  double load = 0;
+  for (const std::vector<double>& row : c.rows) {
+    if (of(row, "pad [-]") == 0) load = of(row, "film load [N]");
+    if (of(row, "pad [-]") == 0 || of(row, "film load [N]") < 100) continue;
+    // what comes in leaves: no film ruptures
+    const double in = of(row, "inflow [m^3/s]");
+    EXPECT_NEAR(in, of(row, "outflow [m^3/s]") + of(row, "side flow [m^3/s]"), 1e-6 * in);
+    EXPECT_GT(of(row, "largest pressure [Pa]"), 1e5);
+  }
+  EXPECT_NEAR(load, 1000.0, 1e-6);
+}
+
+TEST(RecessedJournals, WhatCannotBeIsRefused) {
+  const std::string step = "[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n";
+  const auto refused = [&](const std::string& bearing, const char* code, const char* word) {
+    const DeckRun d(rotor(bearing, step));
+    EXPECT_NE(d.exit, 0) << bearing;
+    EXPECT_TRUE(d.says(code) && d.says(word)) << d.log;
+  };
+  refused(film + with(dam, "125 deg", "165 deg"), "E14", "no dam");
+  refused(film + with(dam, "\"50 mm\"", "\"80 mm\""), "E14", "wider than the film");
+  refused(film + with(dam, "\"15 mm\"", "\"70 mm\""), "E14", "relief_width");
+  refused(film + with(taper, "60 deg", "110 deg"), "E14", "longer than a pad");
+  refused(film + taper + "taper_width = \"80 mm\"\n", "E14", "wider than the film");
+  refused(film + dam + "axial_grid = 0\n", "E26", "no single profile");
+  refused(film + "shape = \"plain\"\naxial_grid = 2\n", "E14", "3 to 8 rows");
+  refused(film + dam + "cavitation = \"mass_conserving\"\n", "E26", "one profile");
+  refused(film + taper +
+              "thinning = \"0.03 1/K\"\ntemperature = \"40 degC\"\n"
+              "heat = { supply_temperature = \"40 degC\" }\n",
+          "E26", "one profile");
+  refused(film + "shape = \"grooves\"\naxial_groove = [{ at = \"0 deg\" }, { at = \"10 deg\" }]\n",
+          "E14", "touch");
+  refused(film + "shape = \"grooves\"\n", "E05", "axial_groove");
+}
