@@ -6,8 +6,10 @@
 #include <core/text.hpp>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
@@ -161,10 +163,39 @@ fs::path checkpoint_file(const fs::path& results, const std::string& step) {
   return results / checkpoint_name(step);
 }
 
+std::string earlier_checkpoint_name(const std::string& step) {
+  return checkpoint_name(step) + std::string(earlier_extension);
+}
+
+namespace {
+
+fs::path earlier_of(const fs::path& file) {
+  fs::path earlier = file;
+  earlier += earlier_extension;
+  return earlier;
+}
+
+/// The file under its second name, and under its own until the new one takes its place: at no moment
+/// is there none that is whole.
+void keep_earlier(const fs::path& file) {
+  const fs::path earlier = earlier_of(file);
+  const fs::path second_name = io::temporary_beside(earlier);
+  if (::link(file.c_str(), second_name.c_str()) == 0) {
+    io::rename_into_place(second_name, earlier);
+    ::unlink(second_name.c_str());  // nothing is renamed where both names are those of one file
+    return;
+  }
+  if (errno == ENOENT) return;           // the first one
+  io::rename_into_place(file, earlier);  // a file system without links
+}
+
+}  // namespace
+
 void write_checkpoint(const fs::path& file, const Checkpoint& c) {
   std::string data = encode(c);
   const std::uint64_t sum = check_sum(data);
   data.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  keep_earlier(file);
   io::write_atomic(file, data);
 }
 
@@ -188,14 +219,58 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& file) {
   }
 }
 
+namespace {
+
+/// Why neither can be used.
+[[noreturn]] void fail_both(const fs::path& earlier, const Error& of_last, bool there_is_earlier) {
+  Diagnostic d = of_last.diagnostics().front();
+  if (d.hint.empty())
+    d.hint = there_is_earlier
+                 ? fmt::format(
+                       "the one before it, '{}', cannot be used either; run anew without "
+                       "--resume",
+                       earlier.string())
+                 : "there is none before it; run anew without --resume";
+  throw Error(Exit::io, std::move(d));
+}
+
+}  // namespace
+
+std::optional<UsableCheckpoint> usable_checkpoint(const fs::path& file) {
+  const fs::path earlier = earlier_of(file);
+  std::error_code ec;
+  const bool there_is_earlier = fs::exists(earlier, ec);
+  std::string why = fmt::format("the checkpoint '{}' is not there", file.string());
+  std::optional<Error> of_last;
+  try {
+    std::optional<Checkpoint> last = read_checkpoint(file);
+    if (last) return UsableCheckpoint{std::move(*last), {}, {}};
+    if (!there_is_earlier) return std::nullopt;
+  } catch (const Error& e) {
+    of_last = e;
+    why = e.what();
+  }
+  try {
+    std::optional<Checkpoint> before = read_checkpoint(earlier);
+    if (before) return UsableCheckpoint{std::move(*before), earlier, std::move(why)};
+  } catch (const Error& e) {
+    if (!of_last) of_last = e;
+  }
+  fail_both(earlier, *of_last, there_is_earlier);
+}
+
+void put_back(const UsableCheckpoint& c, const fs::path& file) {
+  if (!c.earlier.empty()) io::rename_into_place(c.earlier, file);
+}
+
 void check_checkpoints(const fs::path& results, const model::Model& model) {
   for (const model::Step& s : model.steps) {
-    const fs::path file = checkpoint_file(results, s.name);
-    const auto c = read_checkpoint(file);
-    if (!c) continue;
+    const auto found = usable_checkpoint(checkpoint_file(results, s.name));
+    if (!found) continue;
+    const std::string& then = found->checkpoint.deck;
     const std::string now = what_moves(model, s.name);
-    if (c->deck == now) continue;
-    std::istringstream a(c->deck), b(now);
+    if (then == now) continue;
+    std::istringstream a(then), b(now);
     std::string old_line, new_line;
     int table = 0;
     std::string head;
@@ -223,7 +298,8 @@ void check_checkpoints(const fs::path& results, const model::Model& model) {
 bool has_checkpoint(const fs::path& results, const model::Model& model) {
   std::error_code ec;
   return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) {
-    return fs::exists(checkpoint_file(results, s.name), ec);
+    const fs::path file = checkpoint_file(results, s.name);
+    return fs::exists(file, ec) || fs::exists(earlier_of(file), ec);
   });
 }
 

@@ -1,5 +1,5 @@
-// Checkpoints of transient steps: one file a step in <results>/checkpoint/, written whole or not at
-// all.
+// Checkpoints of transient steps: the last and the one before, two files a step in
+// <results>/checkpoint/, each written whole or not at all.
 //
 // A checkpoint holds the state, the integrator's memory, and what every observer knows, so that the
 // continued run equals the uninterrupted one bit for bit. It also holds the deck as far as the
@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace whirl::run {
 
@@ -66,10 +67,27 @@ std::string what_moves(const model::Model& model, const std::string& step);
 std::string checkpoint_name(const std::string& step);
 std::filesystem::path checkpoint_file(const std::filesystem::path& results,
                                       const std::string& step);
+/// What the name of the checkpoint before the last one has behind that of the last.
+inline constexpr std::string_view earlier_extension = ".before";
+std::string earlier_checkpoint_name(const std::string& step);
+/// The one that was there is kept as the earlier one.
+/// @throws Error (Exit::io, E91) when it cannot be written; what was there is then still there.
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c);
 /// Nothing when there is no file.
 /// @throws Error (E91) when it is damaged or of another version.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
+/// The last one, or the one before where that is damaged or lost.
+struct UsableCheckpoint {
+  Checkpoint checkpoint;
+  std::filesystem::path earlier;  ///< where it was read from; empty: the last one
+  std::string why;                ///< what is wrong with the last one
+};
+/// Nothing when there is neither file.
+/// @throws Error (E91) when neither can be used.
+std::optional<UsableCheckpoint> usable_checkpoint(const std::filesystem::path& file);
+/// An earlier one takes the place of the damaged one, so that the next to be written does not replace
+/// the only one that is whole.
+void put_back(const UsableCheckpoint& c, const std::filesystem::path& file);
 /// The state in which a transient step of another results folder ended (step: "" = its only one).
 /// @throws Error (E91): there is none, or several.
 Checkpoint last_state_of(const std::string& folder, const std::string& step);

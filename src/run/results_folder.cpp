@@ -1,4 +1,5 @@
 #include <run/results_folder.hpp>
+#include <run/checkpoint.hpp>
 #include <core/version.hpp>
 #include <chrono>
 #include <cstdint>
@@ -31,7 +32,8 @@ constexpr double worth_saying = 1e9;  // bytes of output
 /// checkpoints would be resumed.
 bool is_of_one_run(const std::string& name) {
   return (name.starts_with("plots/") && name.ends_with(".svg")) ||
-         (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
+         (name.starts_with("checkpoint/") &&
+          (name.ends_with(".whirl") || name.ends_with(earlier_extension)));
 }
 
 /// The results folder, or what is there of the way to it.

@@ -7,6 +7,7 @@
 #include <results/support_coefficients.hpp>
 #include <results/transient_output.hpp>
 #include <run/checkpoint.hpp>
+#include <run/diagnose.hpp>
 #include <run/interrupt.hpp>
 #include <run/job.hpp>
 #include <run/progress.hpp>
@@ -246,6 +247,24 @@ void warn_of_pairs(run::Job& job, const model::Step& step, const run::StepState&
   }
 }
 
+/// From where a resumed step goes on; nothing: from its beginning.
+std::optional<run::Checkpoint> resumed_from(const run::Job& job,
+                                            const std::filesystem::path& file) {
+  if (!job.options.resume) return std::nullopt;
+  std::optional<run::UsableCheckpoint> found = run::usable_checkpoint(file);
+  if (!found) return std::nullopt;
+  if (!found->earlier.empty()) {
+    Diagnostic d;
+    d.severity = Diagnostic::Severity::warning;
+    d.message = fmt::format("{}; the run goes on from the one before, '{}', at t = {:.6g} s",
+                            found->why, found->earlier.string(), found->checkpoint.state.t);
+    d.hint = "results are those of an undisturbed run; what came after that time is computed again";
+    run::print_diagnostics({d});
+  }
+  run::put_back(*found, file);
+  return std::move(found->checkpoint);
+}
+
 /// A transient step on its way.
 class TransientRun {
  public:
@@ -261,6 +280,7 @@ class TransientRun {
   run::Checkpoint checkpoint_of(const system::State& state,
                                 const time::IntegratorState& integrator) const;
   void write_checkpoints();
+  void write(const run::Checkpoint& c) const;
   analysis::TransientResult integrate(run::ProgressLine& line);
   void summarize(const analysis::TransientResult& r, const RunTime& time) const;
   io::ReportSection section_of(const analysis::TransientResult& r) const;
@@ -290,7 +310,7 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
       law_(law),
       checkpoint_path_(job.folder.path(run::checkpoint_name(step.name))),
       deck_(run::what_moves(job.model, step.name)),
-      resumed_(job.options.resume ? run::read_checkpoint(checkpoint_path_) : std::nullopt),
+      resumed_(resumed_from(job, checkpoint_path_)),
       start_(resumed_ ? run::StepState{resumed_->state, resumed_->speed, {}}
                       : transient_start(job, step, law)),
       problem_(transient_problem(job, law, start_)),
@@ -365,16 +385,24 @@ run::Checkpoint TransientRun::checkpoint_of(const system::State& state,
   return c;
 }
 
+void TransientRun::write(const run::Checkpoint& c) const {
+  std::error_code ec;
+  if (std::filesystem::exists(checkpoint_path_,
+                              ec))  // it becomes the earlier one, a file of this run
+    job_.folder.path(run::earlier_checkpoint_name(step_.name));
+  run::write_checkpoint(checkpoint_path_, c);
+}
+
 void TransientRun::write_checkpoints() {
   options_.checkpoint = [this](const system::State& state,
                                const time::IntegratorState& integrator) {
-    run::write_checkpoint(checkpoint_path_, checkpoint_of(state, integrator));
+    write(checkpoint_of(state, integrator));
   };
   options_.keep = [this](const system::State& state, const time::IntegratorState& integrator) {
     kept_ = checkpoint_of(state, integrator);
   };
   options_.fall_back = [this] {
-    if (kept_) run::write_checkpoint(checkpoint_path_, *kept_);
+    if (kept_) write(*kept_);
   };
 }
 

@@ -151,7 +151,8 @@ class Resume : public testing::Test {
     for (const auto& e : fs::recursive_directory_iterator(root)) {
       const std::string name = fs::relative(e.path(), root).string(),
                         ext = e.path().extension().string();
-      if (!e.is_regular_file() || ext == ".whirl" || name == "run.json") continue;
+      if (!e.is_regular_file() || ext == ".whirl" || ext == ".before" || name == "run.json")
+        continue;
       const std::string text = read(e.path());
       out[name] = name == "manifest.txt"             ? sorted_lines(text)
                   : ext == ".json" || ext == ".html" ? without_times(text, ext)
@@ -268,36 +269,118 @@ TEST_F(Resume, AnotherModelIsRefused) {
   EXPECT_TRUE(files("r") == before);
 }
 
-TEST_F(Resume, DamagedCheckpointIsAnError) {
-  write_deck("a.toml", "0.1 s");
-  ASSERT_EQ(run("a.toml", "r", false), 0);
-  std::string c = read("r/checkpoint/run_up.whirl");
-  c[c.size() / 2] ^= 1;
-  std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
-  EXPECT_EQ(run("a.toml", "r", true), 5);
-  EXPECT_NE(read("log.txt").find("damaged checkpoint"), std::string::npos) << read("log.txt");
+// The checkpoint before a damaged one is used, and what comes of it is what an undisturbed run leaves.
+TEST_F(Resume, TheCheckpointBeforeADamagedOneIsUsed) {
+  write_deck("d.toml", "0.3 s");
+  ASSERT_EQ(run("d.toml", "whole", false), 0);
+  ASSERT_TRUE(fs::exists("whole/checkpoint/run_up.whirl.before"));
+  const std::string last = read("whole/checkpoint/run_up.whirl");
+  std::vector<std::pair<std::string, std::string>> damaged;
+  for (const double share : {0.0, 0.001, 0.3, 0.999})
+    damaged.emplace_back(std::to_string(share) + " of it",
+                         last.substr(0, static_cast<std::size_t>(share * last.size())));
+  damaged.emplace_back("without the last byte", last.substr(0, last.size() - 1));
+  damaged.emplace_back("another text", "a text that is longer than what a checkpoint begins with");
+  for (const std::size_t at : {std::size_t{3}, last.size() / 2, last.size() - 3}) {
+    std::string flipped = last;
+    flipped[at] ^= 1;
+    damaged.emplace_back("byte " + std::to_string(at), flipped);
+  }
+  for (const auto& [what, content] : damaged) {
+    SCOPED_TRACE(what);
+    fs::remove_all("r");
+    fs::remove("log.txt");
+    fs::copy("whole", "r", fs::copy_options::recursive);
+    std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << content;
+    ASSERT_EQ(run("d.toml", "r", true), 0) << read("log.txt");
+    const std::string said = read("log.txt");
+    EXPECT_NE(said.find("warning: "), std::string::npos) << said;
+    EXPECT_NE(said.find("'r/checkpoint/run_up.whirl'"), std::string::npos) << said;
+    EXPECT_NE(said.find("'r/checkpoint/run_up.whirl.before'"), std::string::npos) << said;
+    expect_same("whole", "r");
+    fs::remove("log.txt");
+    ASSERT_EQ(run("d.toml", "r", true), 0);
+    EXPECT_EQ(read("log.txt").find("warning"), std::string::npos) << read("log.txt");
+  }
 }
 
-TEST_F(Resume, AnyOtherFileIsNoCheckpoint) {
-  write_deck("a.toml", "0.1 s");
-  ASSERT_EQ(run("a.toml", "r", false), 0);
-  for (const std::string text :
-       {"", "speed", "a text that is longer than what a checkpoint begins with"}) {
-    std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << text;
-    EXPECT_EQ(run("a.toml", "r", true), 5) << text;
-    EXPECT_NE(read("log.txt").find("not a checkpoint"), std::string::npos) << read("log.txt");
-    fs::remove("log.txt");
+// A kill just after the run has gone on from the earlier one finds that one in its place.
+TEST_F(Resume, ALostCheckpointLeavesTheOneBefore) {
+  write_deck("d.toml", "0.5 s");
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("d.toml", "whole", false), 0);
+  const double whole =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  int code = run("d.toml", "cut", false, 0.6 * whole, SIGKILL);
+  for (int cuts = 0; code != 0 && cuts < 4; ++cuts) {
+    if (cuts % 2 == 0)
+      fs::remove("cut/checkpoint/run_up.whirl");
+    else if (fs::exists("cut/checkpoint/run_up.whirl"))
+      fs::resize_file("cut/checkpoint/run_up.whirl", 100);
+    code = run("d.toml", "cut", true, 0.2 * whole, SIGKILL);
   }
+  if (code != 0) code = run("d.toml", "cut", true);
+  ASSERT_EQ(code, 0) << read("log.txt");
+  expect_same("whole", "cut");
+}
+
+TEST_F(Resume, TwoDamagedCheckpointsAreAnError) {
+  write_deck("a.toml", "0.3 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  const auto before = files("r");
+  for (const char* file : {"r/checkpoint/run_up.whirl", "r/checkpoint/run_up.whirl.before"}) {
+    std::string c = read(file);
+    c[c.size() / 2] ^= 1;
+    std::ofstream(file, std::ios::binary) << c;
+  }
+  EXPECT_EQ(run("a.toml", "r", true), 5);
+  const std::string said = read("log.txt");
+  EXPECT_NE(said.find("error[E91]: damaged checkpoint"), std::string::npos) << said;
+  EXPECT_NE(said.find("run_up.whirl.before', cannot be used either"), std::string::npos) << said;
+  EXPECT_TRUE(files("r") == before);
+
+  fs::remove("log.txt");
+  fs::remove("r/checkpoint/run_up.whirl.before");
+  EXPECT_EQ(run("a.toml", "r", true), 5);
+  EXPECT_NE(read("log.txt").find("there is none before it"), std::string::npos);
+}
+
+// A run that starts from another one wants its last state, not some earlier one.
+TEST_F(Resume, AStartFromAnotherRunTakesNoEarlierState) {
+  write_deck("a.toml", "0.3 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  std::string text = read("a.toml");
+  text.replace(text.find("from = \"hold\""), 13, "previous = \"r\"");
+  std::ofstream("b.toml") << text;
+  ASSERT_EQ(run("b.toml", "s", false), 0) << read("log.txt");
+  fs::resize_file("r/checkpoint/run_up.whirl", 100);
+  EXPECT_EQ(run("b.toml", "s", false), 5);
+}
+
+// A fresh run removes both.
+TEST_F(Resume, ARunAnewLeavesNoEarlierCheckpoint) {
+  write_deck("a.toml", "0.3 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  EXPECT_NE(read("r/manifest.txt").find("checkpoint/run_up.whirl.before"), std::string::npos);
+  std::string text = read("a.toml");
+  text.replace(text.find("checkpoint = \"0.02 s\""), 21, "checkpoint = \"0 s\"");
+  std::ofstream("b.toml") << text;
+  ASSERT_EQ(run("b.toml", "r", false), 0);
+  EXPECT_FALSE(fs::exists("r/checkpoint/run_up.whirl"));
+  EXPECT_FALSE(fs::exists("r/checkpoint/run_up.whirl.before"));
 }
 
 TEST_F(Resume, CheckpointOfAnotherVersionIsAnError) {
   write_deck("a.toml", "0.1 s");
   ASSERT_EQ(run("a.toml", "r", false), 0);
-  std::string c = read("r/checkpoint/run_up.whirl");
-  const std::string head = "whirl checkpoint ";
-  ASSERT_EQ(c.substr(0, head.size()), head);
-  c[head.size()] = '1';
-  std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
+  for (const char* file : {"r/checkpoint/run_up.whirl", "r/checkpoint/run_up.whirl.before"}) {
+    if (!fs::exists(file)) continue;  // a fast machine writes one
+    std::string c = read(file);
+    const std::string head = "whirl checkpoint ";
+    ASSERT_EQ(c.substr(0, head.size()), head);
+    c[head.size()] = '1';
+    std::ofstream(file, std::ios::binary) << c;
+  }
   EXPECT_EQ(run("a.toml", "r", true), 5);
   EXPECT_NE(read("log.txt").find("error[E91]"), std::string::npos) << read("log.txt");
   EXPECT_NE(read("log.txt").find("another version"), std::string::npos) << read("log.txt");
