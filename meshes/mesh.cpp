@@ -1,5 +1,6 @@
 #include <meshes/mesh.hpp>
 #include <core/contract.hpp>
+#include <core/interrupt.hpp>
 #include <model/resolution.hpp>
 
 #include <fmt/format.h>
@@ -288,6 +289,7 @@ class LineMesher {
     const bool rigid_next = k + 1 < shaft_.sections.size() && shaft_.sections[k + 1].rigid;
     for (std::size_t c = 0; c < n.size(); ++c)
       for (int i = 0; i < n[c]; ++i) {
+        throw_if_interrupted();
         const double h = cuts[c + 1] - cuts[c];
         const auto point = [&](int j) { return j == n[c] ? cuts[c + 1] : cuts[c] + h * j / n[c]; };
         Element e;
@@ -343,6 +345,7 @@ class LineMesher {
             merged.back().labels.push_back(std::move(l));
     }
     for (Station& x : merged) {
+      throw_if_interrupted();
       x.position = shaft_.position(x.s);
       resolve(x);
       mesh_.stations.push_back(std::move(x));

@@ -1,8 +1,10 @@
 #include <app/commands.hpp>
 #include <run/diagnose.hpp>
+#include <run/memory_limit.hpp>
 #include <steps/prepare.hpp>
 #include <run/results_folder.hpp>
 #include <steps/run_deck.hpp>
+#include <core/parallel.hpp>
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>
@@ -48,6 +50,9 @@ std::string size_line(const model::Model& m) {
     r += fmt::format("  pictures: {} {}, some {}\n", e.fewer_frames ? "up to" : "about",
                      count(static_cast<std::size_t>(std::lround(e.frames)), "frame", "frames"),
                      deck::size_text(e.pictures));
+  constexpr double worth_saying = 5e8;
+  const double memory = deck::estimate_memory(m, processors()).total;
+  if (memory >= worth_saying) r += fmt::format("  memory: about {}\n", deck::size_text(memory));
   return r;
 }
 
@@ -109,6 +114,7 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   const auto e = deck::estimate_output(m);
   v["output_bytes"] = e.total();
   v["output_frames"] = e.frames;
+  v["memory_bytes"] = deck::estimate_memory(m, processors()).total;
   return v;
 }
 
@@ -144,9 +150,12 @@ std::function<model::Model(const std::vector<std::string>&)> builds_of(
 
 /// Mesh and whatever else a run would refuse. Error: what it would.
 meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
+  run::RunOptions run;
+  run.max_memory = o.max_memory;
+  run.max_disk = o.max_disk;
+  run::check_memory(d.model, run);
   meshes::Mesh mesh = meshes::make_mesh(d.model);
   if (d.model.steps.empty()) return mesh;
-  run::RunOptions run;
   run.variant = variants_of(o.deck, o.read);
   run.build = builds_of(o.deck, o.read);
   steps::check_steps(d.model, mesh, run);

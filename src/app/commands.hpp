@@ -11,6 +11,7 @@ struct CheckOptions {
   std::filesystem::path deck;
   deck::ReadOptions read;
   bool json = false, quiet = false, resolved = false;
+  double max_memory = 0, max_disk = 0;  ///< as in run::RunOptions
   std::filesystem::path
       mesh;  ///< folder for the mesh as tables and the drawing of the rotor; empty: none
 };

@@ -10,9 +10,12 @@
 #include <sweep/sweep.hpp>
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
+#include <core/types.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -38,6 +41,39 @@ void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read)
       ->allow_extra_args(false);
 }
 
+/// "8GB" as bytes, 1000 of each to the next, or 1024 ("8GiB"); "none": any number.
+double bytes_of(const std::string& text) {
+  static constexpr std::string_view letters = "kmgtp";
+  if (text == "none") return infinity;
+  double bytes = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), bytes);
+  std::string unit(static_cast<const char*>(read.ptr), text.data() + text.size());
+  std::erase(unit, ' ');
+  for (char& c : unit)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::size_t place = unit.empty() ? letters.npos : letters.find(unit.front());
+  const bool scaled = place != letters.npos;
+  const std::string rest = scaled ? unit.substr(1) : unit;
+  const bool of_1024 = scaled && rest == "ib";
+  const bool known = rest.empty() || rest == "b" || of_1024;
+  if (read.ec != std::errc{} || !known || !(bytes > 0) || !std::isfinite(bytes))
+    throw CLI::ValidationError(
+        fmt::format("'{}' is not a size: write 8GB, 500MB, 16GiB or none", text));
+  return scaled ? bytes * std::pow(of_1024 ? 1024.0 : 1000.0, static_cast<double>(place + 1))
+                : bytes;
+}
+
+void add_limits(CLI::App* c, double& memory, double& disk) {
+  c->add_option_function<std::string>(
+       "--max-memory", [&memory](const std::string& text) { memory = bytes_of(text); },
+       "refuse what would take more memory, by the estimate before it (default: what is available)")
+      ->type_name("SIZE");
+  c->add_option_function<std::string>(
+       "--max-disk", [&disk](const std::string& text) { disk = bytes_of(text); },
+       "refuse what would write more (default: what is free)")
+      ->type_name("SIZE");
+}
+
 void add_run(CLI::App* c, run::RunOptions& run, bool& reproducible) {
   c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
   c->add_flag("--savings", run.savings,
@@ -50,6 +86,7 @@ void add_run(CLI::App* c, run::RunOptions& run, bool& reproducible) {
               "the same digits on every x86-64 processor, by instructions that all of them have");
   c->add_option("-o,--output", run.output, "results folder instead of the deck's")
       ->type_name("FOLDER");
+  add_limits(c, run.max_memory, run.max_disk);
 }
 
 std::vector<CommandInfo> commands_of(const CLI::App& app) {
@@ -105,6 +142,7 @@ void add_check(CLI::App& app, Given& g) {
   c->add_flag("-q,--quiet", g.check.quiet, "errors only");
   c->add_flag("--resolved", g.check.resolved,
               "print the resolved deck: parameters put in, defaults explicit");
+  add_limits(c, g.check.max_memory, g.check.max_disk);
 }
 
 void add_run_command(CLI::App& app, Given& g) {

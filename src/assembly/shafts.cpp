@@ -19,6 +19,7 @@
 #include <meshes/mass_properties.hpp>
 #include <model/full_section.hpp>
 
+#include <core/interrupt.hpp>
 #include <core/rotation.hpp>
 
 #include <Eigen/Cholesky>
@@ -438,6 +439,7 @@ void add_shafts(Assembly& a) {
   if (!a.model.keep_everything) list_absent(a);
   const MassShares shares(a);
   for (const meshes::Element& e : a.mesh.elements) {
+    throw_if_interrupted();
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
     if (shaft.sections[e.section].is_full()) {

@@ -180,7 +180,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[[bearing]]\nname = \"thrust\"\nat = \"shaft:start\"\ntype = \"rigid\"\ndirections = "
        "[\"x\"]"},
       {"E33", "the output would fill the disk",
-       "The estimate of what the deck asks for exceeds the free space of the results folder. Write "
+       "The estimate of what the deck asks for exceeds the free space of the results folder, or "
+       "the "
+       "limit that --max-disk sets. Write "
        "rows less often (output.every), ask for "
        "fewer frames, a window, or fewer contents in [[output.vtk]], or choose another directory.",
        ""},
@@ -252,6 +254,16 @@ const std::vector<CodeInfo>& error_catalogue() {
        "whirl view arranges the frames of a results folder in ParaView: those of the step or shape "
        "that is named, or of which there are most. A deck writes frames with [[output.vtk]].",
        "[[output.vtk]]\nframes = 100\ncontent = [\"line\", \"surface\", \"bearings\"]"},
+      {"E44", "the run would take too much memory",
+       "The estimate, made before the deck is meshed, exceeds what the machine, the control group "
+       "or "
+       "ulimit -v leaves, or the limit that --max-memory sets. It is right within a factor of 2. "
+       "Most of it are matrices, a few tens of kB a node, so that fewer elements help; for many "
+       "modes "
+       "at many speeds ask for fewer. A sweep takes what its processes take together, and about 2 "
+       "kB "
+       "a run for its table.",
+       "whirl run deck.toml --max-memory 64GB\nwhirl run deck.toml --max-memory none"},
       {"E47", "a film that conserves mass where it cannot",
        "cavitation = \"mass_conserving\" follows the oil that a ruptured film carries on to the "
        "next one, in equilibria, small motions and transients. The housing and its grooves must "

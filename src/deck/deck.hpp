@@ -56,7 +56,26 @@ struct OutputEstimate {
 OutputEstimate estimate_output(const model::Model& model);
 /// "1.2 GB"
 std::string size_text(double bytes);
-/// E33 when the estimate exceeds `available` bytes, else nothing.
-std::vector<Diagnostic> check_output(const model::Model& model, double available);
+/// E33 when the estimate exceeds `available` bytes, else nothing. is_asked_for: the user's limit, not
+/// what is free.
+std::vector<Diagnostic> check_output(const model::Model& model, double available,
+                                     bool is_asked_for = false);
+
+/// Bytes of memory that a run takes at its peak, roughly: measured on runs of 10 to 20,000 elements
+/// within a factor of 2, and at least 0.7 of what they took.
+struct MemoryEstimate {
+  struct Part {
+    std::string what;
+    double bytes = 0;
+  };
+  double total = 0;
+  std::vector<Part> parts;  ///< the largest first
+  Where where;              ///< the step that takes most
+};
+/// @param threads that work side by side
+MemoryEstimate estimate_memory(const model::Model& model, int threads);
+/// E44 when the estimate exceeds `limit` bytes, else nothing. is_asked_for: as of check_output().
+std::vector<Diagnostic> check_memory(const model::Model& model, int threads, double limit,
+                                     bool is_asked_for = false);
 
 }  // namespace whirl::deck

@@ -1,6 +1,6 @@
 // What a deck would write, and whether there is room for it.
 #include <deck/deck.hpp>
-#include <model/resolution.hpp>
+#include <deck/mesh_size.hpp>
 
 #include <fmt/format.h>
 
@@ -36,28 +36,6 @@ std::map<std::string, Interval> times_of_steps(const model::Model& m) {
     r[s.name] = {begin, begin + (t ? t->duration : 0.0)};
   }
   return r;
-}
-
-struct Nodes {
-  double line = 0, surface = 0; /**< those of a bore again */
-};
-
-Nodes count_of_nodes(const model::Model& m) {
-  Nodes n;
-  const model::Resolution resolution = model::resolution_of(m);
-  for (const auto& s : m.shafts)
-    for (const auto& x : s.sections) {
-      const double longest = model::longest_element(m, s, x, resolution);
-      const double parts =
-          std::isfinite(longest) ? std::min(1e6, std::ceil(x.length / longest)) : 1.0;
-      const double elements = std::max<double>(x.min_elements, parts);
-      n.line += elements;
-      n.surface += elements * (x.id_l > 0 || x.id_r > 0 ? 2 : 1);
-    }
-  const auto more = static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
-  n.line += more;
-  n.surface += more;
-  return n;
 }
 
 double count_of_columns(const model::Model& m) {
@@ -177,7 +155,7 @@ Packed packed_of(const model::VtkOutput& o) {
 
 /// Of a frame: measured on examples of one to thirty nodes, within a third (compression takes more
 /// or less of different motions).
-double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, const Nodes& nodes) {
+double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, const NodeCount& nodes) {
   const Packed packed = packed_of(o);
   const auto shows = [&](const char* what) {
     return std::find(o.content.begin(), o.content.end(), what) != o.content.end();
@@ -194,7 +172,7 @@ double bytes_of_frame(const model::Model& m, const model::VtkOutput& o, const No
 
 OutputEstimate estimate_output(const model::Model& m) {
   OutputEstimate e;
-  const Nodes nodes = count_of_nodes(m);
+  const NodeCount nodes = count_of_nodes(m);
   const double columns = count_of_columns(m);
   const auto times = times_of_steps(m);
   double largest = 0;
@@ -234,15 +212,17 @@ std::string size_text(double bytes) {
   return fmt::format("{:.1f} TB", bytes / 1e12);
 }
 
-std::vector<Diagnostic> check_output(const model::Model& m, double available) {
+std::vector<Diagnostic> check_output(const model::Model& m, double available, bool is_asked_for) {
   const OutputEstimate e = estimate_output(m);
   const double sure = (e.fewer_frames ? 0 : e.pictures) + (e.at_most ? 0 : e.histories);
   if (sure <= available) return {};
   Diagnostic d;
   d.code = "E33";
-  d.message = fmt::format(
-      "the output would take about {} (histories {}, pictures {}), but only {} are free",
-      size_text(e.total()), size_text(e.histories), size_text(e.pictures), size_text(available));
+  d.message =
+      fmt::format("the output would take about {} (histories {}, pictures {}), but {}",
+                  size_text(e.total()), size_text(e.histories), size_text(e.pictures),
+                  is_asked_for ? fmt::format("the limit is {} (--max-disk)", size_text(available))
+                               : fmt::format("only {} are free", size_text(available)));
   d.hint = e.histories > e.pictures ? "write rows less often: output.every"
                                     : "ask for fewer frames or a window in [[output.vtk]]";
   d.where = e.where;

@@ -17,6 +17,8 @@ struct RunOptions {
   int jobs = 0;                  ///< threads for what can go in parallel; 0 = all processors
   bool savings = false;          ///< measure what leaving out parts of the general model saves
   bool resume = false;           ///< continue from the last checkpoint of the results folder
+  double max_memory = 0;         ///< bytes a run may take; 0: what is available; infinite: any
+  double max_disk = 0;           ///< bytes its output may take; 0: what is free
   std::filesystem::path output;  ///< results folder; empty: as the deck says
   /// Texts and tables that are written ("STEP_modes.csv"), into a folder of this run alone from which
   /// they are read at once; empty: everything, into a folder that is kept.

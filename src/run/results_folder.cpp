@@ -63,7 +63,8 @@ void check_space(const model::Model& model, const RunOptions& options) {
   const auto space = std::filesystem::space(existing_part(model, options), ec);
   if (ec) return;
   const double available = static_cast<double>(space.available);
-  auto problems = deck::check_output(model, available);
+  const bool limited = options.max_disk > 0 && options.max_disk < available;
+  auto problems = deck::check_output(model, limited ? options.max_disk : available, limited);
   if (!problems.empty()) {
     if (problems.front().where.file.empty()) problems.front().where.file = model.deck_path;
     throw Error(Exit::deck, std::move(problems));

@@ -18,7 +18,7 @@ namespace whirl::run {
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options);
 
 /// @throws Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need
-/// not be there yet.
+/// not be there yet, or would take more than RunOptions::max_disk.
 void check_space(const model::Model& model, const RunOptions& options);
 
 /// @throws Error (Exit::io, E91): the results folder cannot be made or written to.

@@ -1,6 +1,7 @@
 #include <run/checkpoint.hpp>
 #include <run/interrupt.hpp>
 #include <run/job.hpp>
+#include <run/memory_limit.hpp>
 #include <run/results_folder.hpp>
 #include <run/options.hpp>
 #include <run/run_lock.hpp>
@@ -16,6 +17,7 @@ namespace whirl::steps {
 
 int run_deck(const model::Model& model, const run::RunOptions& options) {
   run::install_interrupt_handlers();
+  run::check_memory(model, options);
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   std::optional<run::RunLock> lock;

@@ -1,5 +1,6 @@
 // `whirl study DECK`: error against run time.
 #include <run/job.hpp>
+#include <run/memory_limit.hpp>
 #include <run/results_folder.hpp>
 #include <run/options.hpp>
 #include <study/study_parts.hpp>
@@ -205,6 +206,7 @@ int study_deck(const StudyOptions& options) {
          !(std::holds_alternative<model::TransientStep>(model.steps[which].law) &&
            model.steps[which].from.empty()))
     ++which;
+  run::check_memory(model, options.run);
   const bool transient = which < model.steps.size(), meshes = has_mesh_study(model);
   if (!transient && !meshes)
     throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95",

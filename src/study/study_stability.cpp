@@ -3,6 +3,7 @@
 #include <analysis/study/scheme_stability.hpp>
 #include <results/frequency.hpp>
 #include <run/job.hpp>
+#include <run/memory_limit.hpp>
 #include <run/results_folder.hpp>
 #include <run/options.hpp>
 #include <study/study.hpp>
@@ -288,6 +289,7 @@ int study_stability(const StudyOptions& options) {
                 "a stability study takes the speed from the first step");
   run::RunOptions run = options.run;
   run.quiet = true;
+  run::check_memory(model, run);
   run::Job job(model, run, run::prepare_results(model, run));
   const Findings findings = examine_schemes(job, options);
   write_findings(job, findings);

@@ -1,4 +1,5 @@
 #include <sweep/sweep.hpp>
+#include <sweep/limits.hpp>
 #include <sweep/outcome.hpp>
 #include <sweep/plan.hpp>
 #include <sweep/ranks.hpp>
@@ -47,7 +48,8 @@ class Runner {
   Runner(const SweepOptions& options, const Plan& plan, int rank = 0)
       : options_(options),
         plan_(plan),
-        rank_(rank) {}
+        rank_(rank),
+        memory_(memory_of_a_process(options, plan)) {}
 
   /// In the process of a worker. Never throws.
   std::string operator()(std::int64_t run, int worker) const {
@@ -102,6 +104,7 @@ class Runner {
     run::RunOptions o;
     o.quiet = true;
     o.jobs = 1;
+    o.max_memory = memory_;
     o.output = results;
     if (!whole)
       for (const Response& r : plan_.responses)
@@ -123,6 +126,7 @@ class Runner {
   const SweepOptions& options_;
   const Plan& plan_;
   int rank_;
+  double memory_;  ///< bytes that a run may take
 };
 
 Row row_without_answer(std::int64_t run, Ended ended, int signal, double limit, std::size_t n) {
@@ -376,9 +380,11 @@ SweepOptions completed(SweepOptions o, const model::Model& model) {
 namespace {
 
 /// Everything but the runs themselves, by the one process that keeps the rows.
-int lead(const SweepOptions& options, const Plan& plan, std::unique_ptr<Ranks> ranks) {
+int lead(const SweepOptions& options, const Plan& plan, const model::Model& model,
+         std::unique_ptr<Ranks> ranks) {
   std::unique_ptr<run::RunLock> lock;
   try {
+    check_limits(options, plan, model);
     require_keys(options, plan);
     lock = prepare_folder(plan, options.run.resume);
   } catch (...) {
@@ -431,7 +437,7 @@ int run_sweep(const SweepOptions& given) {
     if (leads) throw;
     return static_cast<int>(Exit::deck);
   }
-  if (leads) return lead(*options, *plan, std::move(ranks));
+  if (leads) return lead(*options, *plan, *model, std::move(ranks));
   if (ranks->agree(true)) serve(*ranks, *options, *plan);
   return static_cast<int>(Exit::ok);
 }

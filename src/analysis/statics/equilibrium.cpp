@@ -2,6 +2,7 @@
 #include <core/contract.hpp>
 
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <core/rotation.hpp>
 #include <system/problem.hpp>
 
@@ -82,6 +83,7 @@ void EquilibriumSolver::find_axial_holds() {
 }
 
 void EquilibriumSolver::make_matrices() {
+  throw_if_interrupted();
   if (matrices_.M.value_count() == 0) matrices_ = running_.system().make_matrices();
 }
 
@@ -514,6 +516,7 @@ void EquilibriumSolver::list_holds(const system::State& state, Equilibrium& e) {
 }
 
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
+  throw_if_interrupted();
   const system::System& sys = running_.system();
   Equilibrium out;
   out.Omega = Omega;
