@@ -1,5 +1,6 @@
 #include <sweep/outcome.hpp>
 #include <sweep/columns.hpp>
+#include <sweep/confidence.hpp>
 #include <sweep/pictures.hpp>
 #include <sweep/sensitivity.hpp>
 #include <core/contract.hpp>
@@ -37,6 +38,14 @@ std::vector<double> ranks_of(const std::vector<double>& x) {
   return rank;
 }
 
+/// A word as given: where a spreadsheet would take it for a formula, behind an apostrophe.
+std::string cell_of_word(const std::string& word) {
+  constexpr std::string_view begins_formulas = "=+-@\t\r";
+  const bool formula =
+      !word.empty() && begins_formulas.find(word.front()) != std::string_view::npos;
+  return formula ? "'" + word : word;
+}
+
 io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
   io::Table t;
   t.title = "Runs";
@@ -65,7 +74,7 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
     const auto values = plan.design.values(run);
     for (std::size_t k = 0; k < values.size(); ++k)
       if (text[k])
-        cells.emplace_back(values[k]);
+        cells.emplace_back(cell_of_word(values[k]));
       else
         cells.emplace_back(leading_number(values[k]));
     if (weighted) cells.emplace_back(c.weight[t.rows.size()]);
@@ -84,7 +93,7 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
 io::Table statistics_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Responses";
-  t.nan_means = "no run gave a value";
+  t.nan_means = "no run gave a value; of bounds: see the last column";
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
                {"runs", "-",
@@ -99,7 +108,14 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
                {"5 %", "-", "quantile"},
                {"median", "-", ""},
                {"95 %", "-", "quantile"},
-               {"largest", "-", ""}};
+               {"largest", "-", ""},
+               {"5 % from", "-", "bounds of the quantile, 95 % confidence, by order statistics"},
+               {"5 % to", "-", ""},
+               {"median from", "-", ""},
+               {"median to", "-", ""},
+               {"95 % from", "-", ""},
+               {"95 % to", "-", ""},
+               {"missing bounds", "-", "why there are none, or not all"}};
   for (std::size_t k = 0; k < plan.responses.size(); ++k) {
     const auto values = finite(c.responses[k]);
     const double failed = static_cast<double>(c.responses[k].size() - values.size());
@@ -119,9 +135,32 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
                        s.least, s.p05, s.median, s.p95, s.largest})
         cells.emplace_back(x);
     }
+    const QuantileBounds bounds = bounds_of_response(plan, values);
+    for (const auto& interval : {bounds.p05, bounds.median, bounds.p95}) {
+      cells.emplace_back(interval ? interval->low : nan);
+      cells.emplace_back(interval ? interval->high : nan);
+    }
+    cells.emplace_back(bounds.missing);
     t.add(std::move(cells));
   }
   return t;
+}
+
+/// Some columns of it.
+io::Table part_of(const io::Table& table, std::string title,
+                  const std::vector<std::size_t>& columns) {
+  io::Table part;
+  part.title = std::move(title);
+  part.nan_means = table.nan_means;
+  for (const std::size_t k : columns)
+    part.columns.push_back(table.columns[k]);
+  for (const auto& row : table.rows) {
+    std::vector<io::Table::Cell> cells;
+    for (const std::size_t k : columns)
+      cells.push_back(row[k]);
+    part.add(std::move(cells));
+  }
+  return part;
 }
 
 /// How probable it is to lie beyond the limits asked for.
@@ -405,7 +444,11 @@ void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& optio
   if (options.hdf5) write_hdf5(folder.path("sweep.h5"), runs);
   folder.write_table("statistics.csv", statistics);
   folder.write_table("effects.csv", effects);
-  std::vector<io::Table> tables{statistics};
+  // on a page the bounds stand in a table of their own
+  std::vector<io::Table> tables{
+      part_of(statistics, statistics.title, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}),
+      part_of(statistics, "Percentiles and their bounds, 95 % confidence",
+              {0, 1, 8, 12, 13, 9, 14, 15, 10, 16, 17, 18})};
   if (!plan.limits.empty()) {
     tables.push_back(probabilities_table(plan, c));
     folder.write_table("probabilities.csv", tables.back());

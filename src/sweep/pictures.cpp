@@ -1,11 +1,15 @@
 #include <sweep/pictures.hpp>
+#include <sweep/confidence.hpp>
 #include <sweep/outcome.hpp>
+#include <sweep/scatter_matrix.hpp>
 #include <sweep/sensitivity.hpp>
+#include <sweep/surface.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::sweep {
 namespace {
@@ -42,6 +46,33 @@ plot::Axis axis_of_keys(const Plan& plan) {
   return axis;
 }
 
+/// Where the percentiles lie, as bands behind the bars.
+void add_bounds(const QuantileBounds& bounds, double height, plot::Axes& axes,
+                std::string& caption) {
+  struct Band {
+    const char* name;
+    const std::optional<Interval>& at;
+  };
+  const Band bands[] = {{"5 %", bounds.p05}, {"median", bounds.median}, {"95 %", bounds.p95}};
+  std::string words;
+  for (const Band& b : bands) {
+    if (!b.at) continue;
+    plot::Patch band;
+    band.x = {b.at->low, b.at->high, b.at->high, b.at->low};
+    band.y = {0, 0, height, height};
+    band.style.color = 1;
+    band.style.width = 0;
+    band.fill_opacity = 0.3;
+    band.tooltip = fmt::format("{}: {:.6g} to {:.6g}", b.name, b.at->low, b.at->high);
+    words += fmt::format("{}{} {:.4g} to {:.4g}", words.empty() ? "" : ", ", b.name, b.at->low,
+                         b.at->high);
+    axes.patches.push_back(std::move(band));
+  }
+  if (!words.empty()) caption = "bands, 95 % confidence: " + words;
+  if (bounds.missing.empty()) return;
+  caption += (caption.empty() ? "confidence of the percentiles: " : "; ") + bounds.missing;
+}
+
 plot::Figure histogram(const Plan& plan, const Columns& c, std::size_t r,
                        const std::vector<double>& values) {
   const Statistics s = statistics_of(values);
@@ -66,7 +97,14 @@ plot::Figure histogram(const Plan& plan, const Columns& c, std::size_t r,
   axes.bars.push_back(std::move(bars));
   for (const auto& [place, name] : {std::pair{s.p05, "5 %"}, {s.median, "median"}, {s.p95, "95 %"}})
     axes.rules.push_back({true, place, name});
-  return {fmt::format("histogram_{}", r + 1), plan.responses[r].name, "", {axes}};
+  plot::Figure figure;
+  figure.name = fmt::format("histogram_{}", r + 1);
+  figure.title = plan.responses[r].name;
+  const std::vector<double>& heights = axes.bars.front().height;
+  const double highest = *std::max_element(heights.begin(), heights.end());
+  add_bounds(bounds_of_response(plan, values), highest, axes, figure.caption);
+  figure.axes.push_back(std::move(axes));
+  return figure;
 }
 
 plot::Figure scatter(const Plan& plan, const Columns& c, std::size_t r) {
@@ -83,27 +121,6 @@ plot::Figure scatter(const Plan& plan, const Columns& c, std::size_t r) {
     axes.series.push_back(cloud_of(std::move(x), std::move(y)));
     figure.axes.push_back(std::move(axes));
   }
-  figure.columns = figure.axes.size() > 1 ? 2 : 1;
-  figure.height = 320.0 * std::ceil(static_cast<double>(figure.axes.size()) / figure.columns);
-  return figure;
-}
-
-/// Every response against every other.
-plot::Figure responses_together(const Plan& plan, const Columns& c) {
-  plot::Figure figure;
-  figure.name = "responses";
-  figure.title = "Responses against each other";
-  for (std::size_t a = 0; a < plan.responses.size(); ++a)
-    for (std::size_t b = a + 1; b < plan.responses.size(); ++b) {
-      auto [x, y] = pairs_of(c.responses[a], c.responses[b]);
-      if (x.empty()) continue;
-      plot::Axes axes;
-      axes.x = axis_of_response(plan, c, a);
-      axes.y = axis_of_response(plan, c, b);
-      axes.legend = false;
-      axes.series.push_back(cloud_of(std::move(x), std::move(y)));
-      figure.axes.push_back(std::move(axes));
-    }
   figure.columns = figure.axes.size() > 1 ? 2 : 1;
   figure.height = 320.0 * std::ceil(static_cast<double>(figure.axes.size()) / figure.columns);
   return figure;
@@ -327,11 +344,12 @@ std::vector<plot::Figure> pictures_of(const Plan& plan, const Columns& c) {
     if (values.empty()) continue;
     add(scheme_figure(plan, c, r));
     if (one_at_a_time) continue;
+    add(contours(plan, c, r));
     if (!plan.design.weighted()) add(histogram(plan, c, r, values));
     add(scatter(plan, c, r));
   }
   if (one_at_a_time) return out;
-  if (plan.responses.size() > 1) add(responses_together(plan, c));
+  add(scatter_matrix(plan, c));
   add(parallel_coordinates(plan, c));
   return out;
 }

@@ -5,9 +5,10 @@
 
 namespace whirl::sweep {
 
-/// Everything that can be drawn of these runs: histograms with their quantiles, each response
-/// against what is varied and against the others, all runs as lines across all columns, a surface
-/// where two lists of numbers are combined, and what the scheme of sensitivity found.
+/// Everything that can be drawn of these runs: histograms with their quantiles and where those lie,
+/// each response against what is varied, a matrix of all columns against each other, all runs as lines
+/// across all columns, lines and filled contours where two lists of numbers are combined, filled
+/// contours of a quadratic through samples, and what the scheme of sensitivity found.
 std::vector<plot::Figure> pictures_of(const Plan& plan, const Columns& columns);
 
 }  // namespace whirl::sweep

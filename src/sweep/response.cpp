@@ -72,6 +72,13 @@ Response read_response(const std::string& text) {
   const auto equals = text.find('=');
   const std::string rest = equals == std::string::npos ? text : text.substr(equals + 1);
   r.name = equals == std::string::npos ? text : text.substr(0, equals);
+  if (!r.name.empty() &&
+      std::string_view("=+-@\t\r").find(r.name.front()) != std::string_view::npos)
+    throw bad_response(
+        text,
+        fmt::format("the name begins with '{}': it heads a column of tables, where spreadsheets "
+                    "would take it for a formula",
+                    r.name.front()));
   const auto first = rest.find(':');
   if (first == std::string::npos || first == 0) throw bad_response(text, "no table and column");
   r.table = rest.substr(0, first);

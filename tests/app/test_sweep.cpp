@@ -334,6 +334,40 @@ TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   EXPECT_NE(log_.find("E99"), std::string::npos);
 }
 
+// Words of --vary and names of responses stand in cells that spreadsheets read.
+TEST_F(Sweep, NoCellIsAFormula) {
+  std::ofstream(folder_ / "d.toml") << unbalanced_rotor << steps << "[parameters]\nnote = \"x\"\n";
+  const std::string vary = " --vary 'parameters.note=@SUM(A1:A9),=1+1,-x,plain'";
+  EXPECT_EQ(whirl("sweep d.toml -o s" + vary + " --response '@SUM(A1)=c_undamped:speed:1'"), 2);
+  EXPECT_NE(log_.find("spreadsheets"), std::string::npos) << log_;
+  ASSERT_EQ(whirl("sweep d.toml -o s" + vary + " --response 'c=c_undamped:speed:1'"), 0) << log_;
+  const std::string table = read("s/sweep.csv");
+  for (const char* cell : {",'@SUM(A1:A9),", ",'=1+1,", ",'-x,", ",plain,"})
+    EXPECT_NE(table.find(cell), std::string::npos) << table;
+}
+
+// The bounds of percentiles stand in the table, and why there are none.
+TEST_F(Sweep, PercentilesHaveTheirConfidence) {
+  const std::string response = " --response 'first=c_undamped:speed:1'";
+  const std::string vary = " --vary 'disk.disk.mass=uniform(2 kg, 4 kg)'";
+  ASSERT_EQ(whirl("sweep d.toml -o s --samples 80" + vary + response), 0) << log_;
+  const io::Columns runs = io::read_csv(folder_ / "s/sweep.csv");
+  std::vector<double> x = runs["first"];
+  std::sort(x.begin(), x.end());
+  const io::Columns bounds = io::read_csv(folder_ / "s/statistics.csv");
+  // of 80 samples, by sums of binomial probabilities in fractions: 1st and 9th, 31st and 50th
+  EXPECT_EQ(bounds["5 % from"][0], x[0]);
+  EXPECT_EQ(bounds["5 % to"][0], x[8]);
+  EXPECT_EQ(bounds["median from"][0], x[30]);
+  EXPECT_EQ(bounds["median to"][0], x[49]);
+  EXPECT_EQ(bounds["95 % from"][0], x[71]);
+  EXPECT_EQ(bounds["95 % to"][0], x[79]);
+  EXPECT_NE(read("s/sweep.html").find("bands, 95 % confidence"), std::string::npos);
+  ASSERT_EQ(whirl("sweep d.toml -o few --samples 10" + vary + response), 0) << log_;
+  EXPECT_NE(read("few/statistics.csv").find("not enough samples for 5 % and 95 %: they take 72"),
+            std::string::npos);
+}
+
 TEST_F(Sweep, ListsWhatCanBeAResponse) {
   ASSERT_EQ(whirl("sweep d.toml --list -o s"), 0);
   EXPECT_NE(log_.find("c_undamped:speed [rpm]"), std::string::npos) << log_;

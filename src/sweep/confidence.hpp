@@ -1,0 +1,38 @@
+// Where the percentiles of a distribution lie, by samples of it and without a word on its shape: the
+// number of samples below a percentile is binomial, whatever the distribution.
+// H. A. David, H. N. Nagaraja, Order Statistics, 3rd ed., Wiley 2003, section 7.1.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace whirl::sweep {
+
+struct Plan;
+
+/// Places among sorted samples, from 0.
+struct OrderBounds {
+  std::size_t low = 0, high = 0;
+};
+inline constexpr double confidence_of_bounds = 0.95;
+/// The samples between which the quantile p lies with confidence_of_bounds at least, what is left of
+/// it the same on both sides. Nothing: the samples are too few.
+/// @pre 0 < p < 1
+std::optional<OrderBounds> bounds_of_quantile(std::size_t samples, double p);
+/// From how many samples on there are such bounds.
+std::size_t samples_for_bounds(double p);
+
+struct Interval {
+  double low = 0, high = 0;
+};
+/// Bounds of the 5 %, 50 % and 95 % quantiles of a response; nothing: the samples are too few, or are
+/// no independent ones.
+struct QuantileBounds {
+  std::optional<Interval> p05, median, p95;
+  std::string missing;  ///< why there are none, or not all; empty: there are all
+};
+/// @param values of runs that gave one
+QuantileBounds bounds_of_response(const Plan& plan, std::vector<double> values);
+
+}  // namespace whirl::sweep
