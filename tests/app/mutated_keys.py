@@ -5,6 +5,8 @@
     mutated_keys.py WHIRL EXAMPLES --whole [N]     all of them through `whirl check`; of those it passes, every
                                                    N-th through `whirl run` (30)
     mutated_keys.py WHIRL EXAMPLES --only TEXT     of the sample or the whole: decks with TEXT in their path
+    mutated_keys.py WHIRL EXAMPLES --seconds N     no mutant begins later: for a program that sanitizers slow down
+                                                   (with WHIRL_NO_MEMORY_LIMIT=1); runs have 10 s instead of 20
 
 A fault is a crash, exit code 1, an error without a code or without anything said, a run that does not stop within
 seconds of Ctrl-C, more memory than 4 GB, and numbers in a table that are none though nothing says what that means. Each
@@ -19,6 +21,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -128,6 +131,7 @@ def main():
     parser.add_argument("examples", type=Path)
     parser.add_argument("--whole", nargs="?", const=30, type=int)
     parser.add_argument("--only", default="")
+    parser.add_argument("--seconds", type=float)
     a = parser.parse_args()
     decks = [d for d in sorted(a.examples.glob("*/deck.toml")) if a.only in str(d)]
     if not decks:
@@ -148,8 +152,24 @@ def main():
     # as it stands each deck has to be taken, or nothing is tested
     work += [(deck, "as it stands", deck.read_text(), False) for deck in decks]
     whirl = str(Path(a.whirl).resolve())
+    if a.seconds is not None:   # the same order each time, all decks and runs mixed
+        work.sort(key=lambda w: zlib.crc32(f"{w[0].parent.name} {w[1]}".encode()))
+        global SECONDS
+        SECONDS = 10
+    end = time.monotonic() + (a.seconds or float("inf"))
+
+    def in_time(w):
+        return try_one(whirl, *w) if time.monotonic() < end else None
+
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda w: try_one(whirl, *w), work))
+        found = list(pool.map(in_time, work))
+    if None in found:
+        print(f"{found.count(None)} of {len(work)} left out for time")
+        work = [w for w, f in zip(work, found) if f]
+        found = [f for f in found if f]
+        decks = [w[0] for w in work if w[1] == "as it stands"]
+    if not found:
+        raise SystemExit("nothing was tried")
     faults = [f for f, _ in found if f]
     print(f"{len(work) - len(decks)} mutants of {len(decks)} decks: {sum(t for _, t in found) - len(decks)} taken, "
           f"{sum(w[3] for w in work)} of them run if taken, {len(faults)} faults")
