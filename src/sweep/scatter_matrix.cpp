@@ -126,11 +126,12 @@ plot::Axes cloud_of(const Column& across, const Column& up, bool first, bool las
 
 plot::Axes correlation_of(const Column& across, const Column& up) {
   const auto [x, y] = pairs_of(*across.values, *up.values);
-  const double correlation = rank_correlation(x, y);
+  const double exact = rank_correlation(x, y);
+  const double correlation = std::abs(exact) < 0.005 ? 0.0 : exact;  // no "-0.00"
   plot::Axes axes;
   axes.x = plain_axis();
   axes.y = plain_axis();
-  plot::Note note{0.4, 0.45, std::isnan(correlation) ? "-" : fmt::format("{:.2f}", correlation)};
+  plot::Note note{0.4, 0.6, std::isnan(correlation) ? "-" : fmt::format("{:.2f}", correlation)};
   note.leader = false;
   note.dx = note.dy = 0;
   axes.notes.push_back(std::move(note));
