@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -205,6 +206,41 @@ INSTANTIATE_TEST_SUITE_P(Schemes, ResumeScheme,
                                          "method = \"generalized_alpha\", dt = \"10 us\"",
                                          "method = \"gauss4\"",
                                          "method = \"ida\", tolerance = 1e-2"));
+
+// As many kills as WHIRL_KILLS says (5), each at a random time, run after run: whatever a kill leaves
+// is gone on with, and every run that comes to its end has the files of an uninterrupted one.
+TEST_F(Resume, RandomKillsLeaveNoTrace) {
+  const char* asked = std::getenv("WHIRL_KILLS");
+  const int kills = asked ? std::atoi(asked) : 5;
+  ASSERT_GT(kills, 0);
+  write_deck("d.toml", "0.5 s");
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("d.toml", "whole", false), 0);
+  const double whole =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0.02, 0.6);
+  int done = 0, runs = 0;
+  for (int starts = 0; done < kills && starts < 20 * kills; ++starts) {
+    const int code = run("d.toml", "cut", fs::exists("cut"), share(random) * whole, SIGKILL);
+    ASSERT_TRUE(code == 0 || code == -SIGKILL) << code << read("log.txt");
+    done += code == -SIGKILL;
+    if (code != 0) continue;
+    expect_same("whole", "cut");
+    fs::remove_all("cut");
+    fs::remove("log.txt");
+    ++runs;
+  }
+  EXPECT_EQ(done, kills);
+  if (fs::exists("cut")) {
+    ASSERT_EQ(run("d.toml", "cut", true), 0) << read("log.txt");
+    expect_same("whole", "cut");
+    ++runs;
+  }
+  RecordProperty("runs", runs);
+}
 
 TEST_F(Resume, LaterEndAndOtherOutputs) {
   write_deck("short.toml", "0.2 s");
