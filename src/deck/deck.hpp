@@ -72,7 +72,7 @@ struct MemoryEstimate {
   std::vector<Part> parts;  ///< the largest first
   Where where;              ///< the step that takes most
 };
-/// @param threads that work side by side
+/// threads: that work side by side.
 MemoryEstimate estimate_memory(const model::Model& model, int threads);
 /// E44 when the estimate exceeds `limit` bytes, else nothing. is_asked_for: as of check_output().
 std::vector<Diagnostic> check_memory(const model::Model& model, int threads, double limit,

@@ -32,7 +32,7 @@ struct QuantileBounds {
   std::optional<Interval> p05, median, p95;
   std::string missing;  ///< why there are none, or not all; empty: there are all
 };
-/// @param values of runs that gave one
+/// values: of runs that gave one.
 QuantileBounds bounds_of_response(const Plan& plan, std::vector<double> values);
 
 }  // namespace whirl::sweep
