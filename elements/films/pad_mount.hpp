@@ -17,19 +17,19 @@ void add_force(const TiltingPad& pad, const Nodes& x, Force& f) {
   f[row_of(0)] += pad.tilt_stiffness * x[2]->u.x() + pad.tilt_damping * x[2]->du.x() +
                   pad.inertia * x[2]->ddu.x();
   if constexpr (Pressed)
-    f[row_of(1)] += pad.pivot_stiffness * x[3]->u.x() + pad.pivot_damping * x[3]->du.x() +
-                    pad.mass * x[3]->ddu.x();
+    f[row_of(1)] +=
+        pad.pivot_force(x[3]->u.x()) + pad.pivot_damping * x[3]->du.x() + pad.mass * x[3]->ddu.x();
 }
 
-template <bool Pressed, class Tangent>
-void add_tangent(const TiltingPad& pad, Tangent& t) {
+template <bool Pressed, class Nodes, class Tangent>
+void add_tangent(const TiltingPad& pad, const Nodes& x, Tangent& t) {
   constexpr Index tilt = row_of(0);
   t.K(tilt, tilt) += pad.tilt_stiffness;
   t.C(tilt, tilt) += pad.tilt_damping;
   t.M(tilt, tilt) += pad.inertia;
   if constexpr (Pressed) {
     constexpr Index pressed = row_of(1);
-    t.K(pressed, pressed) += pad.pivot_stiffness;
+    t.K(pressed, pressed) += pad.pivot_slope(x[3]->u.x());
     t.C(pressed, pressed) += pad.pivot_damping;
     t.M(pressed, pressed) += pad.mass;
   }
@@ -44,7 +44,7 @@ void add_energy(const TiltingPad& pad, const Nodes& x, system::Energy& e) {
   if constexpr (Pressed) {
     const double pressed = x[3]->u.x(), pressed_rate = x[3]->du.x();
     e.kinetic += 0.5 * pad.mass * pressed_rate * pressed_rate;
-    e.elastic += 0.5 * pad.pivot_stiffness * pressed * pressed;
+    e.elastic += pad.pivot_energy(pressed);
     e.dissipated += pad.pivot_damping * pressed_rate * pressed_rate;
   }
 }

@@ -78,10 +78,10 @@ double PadAtRest::find_pressed(const LateralMotion& journal, const Vec2& q,
   const double slip = journal.spin - journal.housing_spin;
   const auto balance = [&](double by) {
     const LateralMotion own = pad_.seen(journal, Vec2(tilt_at(by), by), Vec2::Zero());
-    return pad_.pivot_stiffness * by + force(own.r, slip).dot(pad_.pivot);
+    return pad_.pivot_force(by) + force(own.r, slip).dot(pad_.pivot);
   };
   const double size = pad_.film.surface->clearance();
-  return root_near(q.y(), 1e-3 * size, size, pad_.pivot_stiffness * size, balance);
+  return root_near(q.y(), 1e-3 * size, size, pad_.pivot_force(size), balance);
 }
 
 Vec2 PadAtRest::find_near(const LateralMotion& journal, const Vec2& q) const {
@@ -161,9 +161,9 @@ void PadMount<Pressed, Offsets>::add_force(const Nodes& x, const system::Context
 }
 
 template <bool Pressed, bool Offsets>
-void PadMount<Pressed, Offsets>::add_tangent(const Nodes&, const system::Context&,
+void PadMount<Pressed, Offsets>::add_tangent(const Nodes& x, const system::Context&,
                                              system::TangentX<size>& t) const {
-  pad_mount::add_tangent<Pressed>(rest->pad(), t);
+  pad_mount::add_tangent<Pressed>(rest->pad(), x, t);
 }
 
 template <bool Pressed, bool Offsets>

@@ -68,8 +68,27 @@ TiltingPad make_tilting_pad(const PadGeometry& g) {
   const double slender = g.radius / clearance;
   const double own = g.viscosity * g.length * slender * slender * slender * p.arm * p.arm;
   p.tilt_damping = rest_damper * own;
+  p.pivot_rest = rest_spring * own / (p.arm * p.arm);
   p.tilt_stiffness = rest_spring * own;  // times 1/s: far below every frequency of a film at work
   return p;
+}
+
+double TiltingPad::pivot_force(double by) const {
+  if (pivot_exponent == 1.0) return pivot_stiffness * by;
+  return pivot_rest * by + (by > 0.0 ? pivot_stiffness * std::pow(by, pivot_exponent) : 0.0);
+}
+
+double TiltingPad::pivot_slope(double by) const {
+  if (pivot_exponent == 1.0) return pivot_stiffness;
+  const double power = pivot_exponent - 1.0;
+  return pivot_rest + (by > 0.0 ? pivot_exponent * pivot_stiffness * std::pow(by, power) : 0.0);
+}
+
+double TiltingPad::pivot_energy(double by) const {
+  if (pivot_exponent == 1.0) return 0.5 * pivot_stiffness * by * by;
+  const double power = pivot_exponent + 1.0;
+  return 0.5 * pivot_rest * by * by +
+         (by > 0.0 ? pivot_stiffness / power * std::pow(by, power) : 0.0);
 }
 
 LateralMotion TiltingPad::seen(LateralMotion m, const Vec2& q, const Vec2& rate) const {
@@ -164,7 +183,7 @@ Vec2 TiltingPad::settled(const LateralMotion& m) const {
   const auto balance = [&](double by) {
     const double tilt = settled_tilt(pressed(by));
     if (std::isnan(tilt)) return -infinity;
-    return pivot_stiffness * by - standing(m, Vec2(tilt, by)).load;
+    return pivot_force(by) - standing(m, Vec2(tilt, by)).load;
   };
   const double size = film.surface->clearance();
   double low = -size, high = size;
@@ -229,7 +248,7 @@ void TiltingPadJoint<Pressed, Offsets>::add_tangent(const Nodes& x, const system
   for (std::size_t i = 0; i < own; ++i)
     directions[i] = pad.direction(static_cast<int>(i));
   pad_mount::add_film_tangent(Link{offset}, s, directions, t, at_ends, k);
-  pad_mount::add_tangent<Pressed>(pad, k);
+  pad_mount::add_tangent<Pressed>(pad, x, k);
 }
 
 template <bool Pressed, bool Offsets>

@@ -9,7 +9,10 @@
 // journal, z = (F, T_0, T_1) of film.hpp at (r_p, r_p'), it takes from the pad: virtual work
 // F.(dr - da). Left sides of the pad's own unknowns:
 //   F.da/ddelta + k_t delta + c_t delta' + I delta''   (N m)
-//   F.n + k_p xi + c_p xi' + m xi''                     (N)
+//   F.n + k_p xi^n + c_p xi' + m xi''                   (N)
+// n = 1: a pivot that is elastic both ways; 3/2: a ball in its seat, 10/9: a line of contact (Hertz,
+// Palmgren: elements/rolling/hertz.hpp), which take nothing where they are not pressed (xi < 0) but for a
+// rest spring.
 // so a pad at rest turns until the resultant of its pressure passes through the pivot, and the pivot
 // gives by -F.n/k_p. Power: the film turns -(F.w + T s) at r_p into heat (film.hpp), pads lose
 // c_t delta'^2 + c_p xi'^2.
@@ -70,11 +73,19 @@ struct PadStanding {
 
 struct TiltingPad {
   FiniteJournal film;
-  Vec2 pivot = Vec2::UnitX();                               ///< n
-  double arm = 0;                                           ///< m
-  double inertia = 0;                                       ///< I about the pivot, kg m2
-  double tilt_stiffness = 0, tilt_damping = 0;              ///< k_t N m/rad, c_t N m s/rad
-  double mass = 0, pivot_stiffness = 0, pivot_damping = 0;  ///< m kg, k_p N/m, c_p N s/m
+  Vec2 pivot = Vec2::UnitX();                   ///< n
+  double arm = 0;                               ///< m
+  double inertia = 0;                           ///< I about the pivot, kg m2
+  double tilt_stiffness = 0, tilt_damping = 0;  ///< k_t N m/rad, c_t N m s/rad
+  double mass = 0, pivot_damping = 0;           ///< m kg, c_p N s/m
+  /// k_p N/m^n and n: the pivot takes k_p xi^n. n > 1, a contact: nothing where it is not pressed.
+  double pivot_stiffness = 0, pivot_exponent = 1;
+  double pivot_rest = 0;  ///< N/m, beside a contact: where a pad that carries nothing stands
+
+  /// What the pivot takes at a compression, N, its slope, N/m, and what it stores, J.
+  double pivot_force(double by) const;
+  double pivot_slope(double by) const;
+  double pivot_energy(double by) const;
 
   Vec2 across() const { return Vec2(-pivot.y(), pivot.x()); }
   /// da/ddelta (0) and da/dxi (1).

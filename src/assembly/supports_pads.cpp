@@ -3,6 +3,7 @@
 #include <assembly/carried_cells.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/support_parts.hpp>
+#include <elements/rolling/hertz.hpp>
 #include <elements/films/oil.hpp>
 #include <elements/films/tilting_pad.hpp>
 
@@ -12,6 +13,24 @@
 #include <cmath>
 
 namespace whirl::assembly {
+
+namespace {
+
+/// The pivot of a pad as long as `length` becomes a contact.
+void set_contact(elements::TiltingPad& pad, const model::TiltingPadJournal::Contact& c,
+                 double length) {
+  if (c.shape == model::TiltingPadJournal::Contact::Shape::line) {
+    pad.pivot_exponent = 10.0 / 9.0;
+    pad.pivot_stiffness = elements::hertz_line_stiffness(c.length > 0 ? c.length : length);
+    return;
+  }
+  const double radius = 1.0 / (1.0 / c.radius - 1.0 / c.seat_radius);
+  const elements::ContactMaterial material{c.E, c.nu};
+  pad.pivot_exponent = 1.5;
+  pad.pivot_stiffness = elements::hertz_point_stiffness(radius, radius, material, material);
+}
+
+}  // namespace
 
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
                                                     FilmGrid grid) {
@@ -43,6 +62,7 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
     pad.inertia = law.inertia;
     pad.mass = law.mass;
     pad.pivot_stiffness = law.pivot_stiffness;
+    if (law.contact) set_contact(pad, *law.contact, law.length);
     pad.pivot_damping = law.pivot_damping;
     out.push_back(std::move(pad));
   }
@@ -312,7 +332,10 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   condition.where = b.where;
   condition.sommerfeld = 2.0 * viscosity_of(law.oil) * law.length * R * slender * slender;
   condition.reach = [ring](const NodeAt& at) { return ring->reach(at); };
-  condition.state = [ring, clearance = law.clearance](const NodeAt& at) {
+  std::vector<double> offsets;
+  for (const auto& p : law.pads())
+    offsets.push_back(p.offset);
+  condition.state = [ring, clearance = law.clearance, offsets](const NodeAt& at) {
     const std::vector<elements::PadStanding> now = ring->standing(at);
     Vec2 load = Vec2::Zero();
     for (const auto& p : now)
@@ -329,9 +352,9 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     s.detail = describe_worst(now);
     if (const std::size_t pad = ring->tipping(ring->journal(at)))
       s.detail += fmt::format(
-          "; pad {} finds no balance there (eccentricity {:.3f} towards its pivot) and turns until "
-          "it touches",
-          pad, now[pad - 1].eccentricity);
+          "; pad {} finds no balance there (eccentricity {:.3f} towards its pivot, which stands at "
+          "{:.3g} of its arc) and turns until it touches",
+          pad, now[pad - 1].eccentricity, offsets[pad - 1]);
     constexpr double near =
         0.8;  // of the gap: what it could carry is of interest, and found slowly
     if (s.displacement > near * s.gap)
@@ -351,8 +374,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       throw run_error("E26", "its pads stand in a housing that does not turn",
                       "between two turning shafts use type = \"journal\"");
     }
-    const bool at_nodes = n.shaft.offset == 0 && n.other.offset == 0,
-               rigid = law.pivot_stiffness == 0;
+    const bool at_nodes = n.shaft.offset == 0 && n.other.offset == 0, rigid = law.rigid_pivots();
     if (rigid)
       at_nodes ? add_ring<false, false>(a, b, n, law) : add_ring<false, true>(a, b, n, law);
     else

@@ -155,10 +155,19 @@ struct TiltingPadJournal {
   double thickness = 0;  ///< of a pad at its pivot, m
   double inertia = 0;    ///< of a pad about its pivot, kg m2; 0: it follows at once
   double mass = 0;       ///< of a pad, kg, along an elastic pivot
-  double pivot_stiffness = 0, pivot_damping = 0;  ///< N/m, N s/m; stiffness 0: rigid
-  double tilt_stiffness = 0;                      ///< of a flexure, N m/rad
-  std::vector<double> frequency_ratios;           ///< frequency over speed, of further coefficients
-  int nodes = 72;                                 ///< grid points round the circumference
+  double pivot_stiffness = 0, pivot_damping = 0;  ///< N/m, N s/m; stiffness 0: rigid, or a contact
+  struct Contact {
+    enum class Shape { ball, line } shape = Shape::ball;
+    double radius = 0,
+           seat_radius = infinity;  ///< of a ball and its hollow seat, m; infinity: flat
+    double length = 0;              ///< of a line, m; 0: that of the bearing
+    double E = 210e9, nu = 0.3;     ///< of a ball and its seat, Pa
+  };
+  std::optional<Contact> contact;  ///< pivots that stiffen with their load
+  bool rigid_pivots() const { return pivot_stiffness == 0 && !contact; }
+  double tilt_stiffness = 0;             ///< of a flexure, N m/rad
+  std::vector<double> frequency_ratios;  ///< frequency over speed, of further coefficients
+  int nodes = 72;                        ///< grid points round the circumference
   int rows = 0;  ///< of a grid along the axis too, over half the length; 0: one profile there
 
   /// All pads, in the order of the deck or of their pivots from the first.

@@ -218,6 +218,65 @@ TEST(TiltingPads, Keys) {
   EXPECT_LT(loose.pad(2, "pad load [N]"), 0.9 * plain.pad(2, "pad load [N]"));
 }
 
+// Hertz: a ball of radius r in a seat of radius s takes 4/3 E* sqrt(R) xi^(3/2), 1/R = 1/r - 1/s, E* =
+// E/(2 (1 - nu^2)). Palmgren: a line of steel takes 8.06e4 l^(8/9) xi^(10/9) N, in mm.
+TEST(TiltingPads, ContactsTakeTheirLoad) {
+  const auto with = [](const std::string& more) {
+    return pads_of(rotor(five_pads + on_pad + more, still));
+  };
+  const auto pressed = [](const Pads& p) { return p.pad(3, "pivot compression [m]"); };
+  const auto load = [](const Pads& p) { return p.pad(3, "pad load [N]"); };
+  const std::string ball = "pivot_contact = { shape = \"ball\", radius = \"190 mm\"";
+  const auto hertz = [](double E, double nu, double radius, double xi) {
+    return 4.0 / 3.0 * E / (2 * (1 - nu * nu)) * std::sqrt(radius) * std::pow(xi, 1.5);
+  };
+  const Pads seat = with(ball + ", seat_radius = \"200 mm\" }\n"), flat = with(ball + " }\n"),
+             soft = with(ball + ", E = \"100 GPa\", nu = 0.2 }\n"),
+             line = with("pivot_contact = { shape = \"line\" }\n"),
+             brief = with("pivot_contact = { shape = \"line\", length = \"100 mm\" }\n");
+  EXPECT_NEAR(hertz(210e9, 0.3, 3.8, pressed(seat)), load(seat), 1e-6 * load(seat));
+  EXPECT_NEAR(hertz(210e9, 0.3, 0.19, pressed(flat)), load(flat), 1e-6 * load(flat));
+  EXPECT_NEAR(hertz(100e9, 0.2, 0.19, pressed(soft)), load(soft), 1e-6 * load(soft));
+  const auto palmgren = [](double length, double xi) {
+    return 8.06e4 * std::pow(1e3 * length, 8.0 / 9) * std::pow(1e3 * xi, 10.0 / 9);
+  };
+  EXPECT_NEAR(palmgren(0.263144, pressed(line)), load(line), 1e-6 * load(line));
+  EXPECT_NEAR(palmgren(0.1, pressed(brief)), load(brief), 1e-6 * load(brief));
+  // its slope is what the small motions see: that of an elastic pivot as stiff as it is there
+  const double slope = 1.5 * load(flat) / pressed(flat);
+  EXPECT_GT(flat.of("kzz [N/m]"), soft.of("kzz [N/m]"));
+  const Pads rigid = with("");
+  EXPECT_LT(flat.of("kzz [N/m]"), rigid.of("kzz [N/m]"));
+  EXPECT_GT(slope, flat.of("kzz [N/m]"));
+  // a pad that carries nothing is not pressed
+  EXPECT_LT(std::abs(flat.pad(0, "pivot compression [m]")), 1e-3 * pressed(flat));
+}
+
+TEST(TiltingPads, AMotionOnBallsStaysInTheEquilibrium) {
+  const DeckRun d(
+      rotor(five_pads + on_pad + "pivot_contact = { shape = \"ball\", radius = \"190 mm\" }\n",
+            "[[drive]]\nname = \"motor\"\nat = \"a:start\"\ntype = \"speed\"\nspeed = "
+            "\"94.2477796 rad/s\"\n[[probe]]\nname = \"P\"\nat = \"a:start\"\n" +
+                still +
+                "[[step]]\nname = \"t\"\ntype = \"transient\"\nstart = \"static\"\n"
+                "duration = \"0.05 s\"\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const double rest = Pads(d).of("z [m]");
+  EXPECT_NEAR(d.csv("t.csv").last().at("P.z [m]"), rest, 1e-6 * std::abs(rest));
+}
+
+TEST(TiltingPads, ContactsThatCannotBe) {
+  const auto refused = [](const std::string& more, const char* code, const char* word) {
+    const DeckRun d(rotor(five_pads + on_pad + more, still));
+    EXPECT_NE(d.exit, 0);
+    EXPECT_TRUE(d.says(code) && d.says(word)) << d.log;
+  };
+  refused("pivot_contact = { shape = \"ball\", radius = \"20 mm\", seat_radius = \"20 mm\" }\n",
+          "E14", "does not fit");
+  refused("pivot_stiffness = \"1e9 N/m\"\npivot_contact = { shape = \"line\" }\n", "E26",
+          "contact");
+}
+
 // The motion from rest ends where statics say, and one that begins there stays: with pads that follow
 // at once, and with inertia on elastic pivots.
 TEST(TiltingPads, MotionEndsInTheEquilibrium) {

@@ -192,6 +192,14 @@ TEST(TiltingPad, Conformance) {
   o.q0[18] = 0.05 * c;
   check_kernel(TiltingPadJoint<true>{pad}, o);
   check_kernel(TiltingPadJoint<true, true>{pad, {1e-6, 2e-6}}, o);
+  for (const double exponent : {1.5, 10.0 / 9.0}) {  // contacts, pressed and hanging free
+    pad.pivot_exponent = exponent;
+    pad.pivot_stiffness = 2e8 * std::pow(0.05 * c, 1.0 - exponent);
+    o.q0[18] = 0.05 * c;
+    check_kernel(TiltingPadJoint<true>{pad}, o);
+    o.q0[18] = -0.05 * c;
+    check_kernel(TiltingPadJoint<true>{pad}, o);
+  }
 }
 
 // Five pads, load on one: y/cb = -0.61797 by an independent finite-volume code with

@@ -214,7 +214,8 @@ void describe_dam(Visitor& v, model::FiniteJournal& b) {
   leading_edge(v, b.leading_at_end);
   if (!v.clean()) return;
   if (b.recess_arc >= pi - b.groove)
-    v.error("E14", "dam_arc", "the pocket is longer than its pad: there is no dam");
+    v.error("E14", "dam_arc", "the pocket is longer than its pad: there is no dam",
+            "less than 180 deg less a groove");
   else if (b.recess_width > b.length || b.relief_width >= b.length)
     v.error("E14", b.recess_width > b.length ? "dam_width" : "relief_width",
             fmt::format("wider than the film is long ({})", units::display(b.length, "mm")));
@@ -238,8 +239,11 @@ void describe_lands(Visitor& v, model::FiniteJournal& b) {
   if (!v.clean()) return;
   if (!narrow) b.recess_width = b.length;
   const double arc = two_pi / b.lobes - b.groove;
-  if (b.recess_arc > arc)
-    v.error("E14", "taper_arc", fmt::format("longer than a pad ({})", units::display(arc, "deg")));
+  if (arc <= 0)
+    v.error("E14", "groove", "the grooves leave nothing of the pads", "narrower grooves, or fewer");
+  else if (b.recess_arc > arc * (1 + 1e-9))
+    v.error("E14", "taper_arc", fmt::format("longer than a pad ({})", units::display(arc, "deg")),
+            "at most all of the pad");
   else if (b.recess_width > b.length)
     v.error("E14", "taper_width",
             fmt::format("wider than the film is long ({})", units::display(b.length, "mm")));
@@ -250,12 +254,16 @@ void describe_grooves(Visitor& v, model::FiniteJournal& b) {
   v.list(required("axial_groove"), Visitor::body_of(b.grooves, model::FiniteJournal::Groove{}),
          "an axial groove");
   if (!v.clean()) return;
+  if (b.grooves.empty())
+    v.error("E05", "axial_groove", "no groove is given",
+            "axial_groove = [{ at = \"90 deg\" }], or shape = \"plain\"");
   for (std::size_t k = 0; k < b.grooves.size(); ++k)
     for (std::size_t i = 0; i < k; ++i) {
       const double apart = std::abs(std::remainder(b.grooves[k].at - b.grooves[i].at, two_pi));
       if (apart > 0.5 * (b.grooves[k].width + b.grooves[i].width)) continue;
       v.error("E14", "axial_groove",
-              fmt::format("grooves {} and {} touch each other", i + 1, k + 1));
+              fmt::format("grooves {} and {} touch each other", i + 1, k + 1),
+              "one groove instead, or narrower ones");
       return;
     }
 }
@@ -378,6 +386,39 @@ void check_pads(Visitor& v, const model::TiltingPadJournal& b) {
 
 }  // namespace
 
+namespace {
+
+/// A ball or a line in its seat.
+void describe_contact(Visitor& v, model::TiltingPadJournal& b) {
+  using Contact = model::TiltingPadJournal::Contact;
+  Contact c;
+  const Alternative shapes[] = {
+      {"ball", "a ball in a hollow seat, or on a flat one (Hertz: load as the power 3/2)",
+       [&](Visitor& w) {
+         c.shape = Contact::Shape::ball;
+         w.quantity(required("radius"), c.radius, "mm", positive, "of the ball");
+         w.quantity(optional("seat_radius", "a flat seat"), c.seat_radius, "mm", positive,
+                    "of the hollow seat, larger than that of the ball");
+         w.quantity("E", c.E, "GPa", positive, "Young's modulus of both");
+         w.number("nu", c.nu, Range{0, 0.5, false, true}, "Poisson's ratio of both");
+         if (w.clean() && c.seat_radius <= c.radius)
+           w.error("E14", "seat_radius", "the ball does not fit into its seat",
+                   "a seat is a little wider than its ball");
+       }},
+      {"line", "a rocker on a line, of steel (Palmgren: load as the power 10/9)",
+       [&](Visitor& w) {
+         c.shape = Contact::Shape::line;
+         w.quantity(optional("length", "that of the bearing"), c.length, "mm", positive,
+                    "of the line, along the axis");
+       }},
+  };
+  v.alternatives(required("shape"), shapes, "what touches");
+  if (!v.clean()) return;
+  b.contact = c;
+}
+
+}  // namespace
+
 void describe(Visitor& v, model::TiltingPadJournal& b) {
   dimensions(v, b, "radial clearance as assembled: of a centred journal at the pivots");
   v.quantity("thickness", b.thickness, "mm", not_negative,
@@ -401,6 +442,10 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
   v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
   const bool elastic = v.quantity(optional("pivot_stiffness", "rigid pivots"), b.pivot_stiffness,
                                   "N/m", positive, "of a pivot, radial");
+  const bool contact = v.table(
+      optional("pivot_contact", "pivots as pivot_stiffness says"),
+      [&](Visitor& w) { describe_contact(w, b); },
+      "elastic pivots that stiffen with their load, instead of pivot_stiffness");
   v.quantity("pivot_damping", b.pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
   v.quantity("tilt_stiffness", b.tilt_stiffness, "N.m/rad", not_negative,
              "of a pivot against tilting: a flexure");
@@ -412,9 +457,12 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
   if ((count || first) && !b.own.empty())
     v.error("E26", count ? "pads" : "first_pivot", "equal pads and pads by themselves are given",
             "keep one of the two");
-  else if (!elastic && (b.mass != 0 || b.pivot_damping != 0))
+  else if (elastic && contact)
+    v.error("E26", "pivot_stiffness", "the pivots have a stiffness and a contact",
+            "keep one of the two");
+  else if (!elastic && !contact && (b.mass != 0 || b.pivot_damping != 0))
     v.error("E05", b.mass != 0 ? "mass" : "pivot_damping", "a rigid pivot does not move",
-            "give pivot_stiffness, or leave it out");
+            "give pivot_stiffness or pivot_contact, or leave it out");
   else
     check_pads(v, b);
 }
