@@ -41,6 +41,7 @@ class SensitivityRun {
   };
   std::vector<analysis::OpenedLoop> opened_loops(const run::Job& job);
   void judge_stability();
+  void name_growth(const analysis::WhirlMode& fastest);
   void solve();
   void find_peak(std::size_t loop);
   void add_curves();
@@ -50,6 +51,7 @@ class SensitivityRun {
 
   const model::SensitivityStep& law_;
   std::vector<Loop> loops_;
+  std::vector<std::size_t> bearing_of_;  ///< one a loop
   results::FrequencyStep s_;
   std::vector<analysis::OpenedLoop> opened_;
   std::vector<double> grid_;                  ///< rad/s
@@ -74,9 +76,38 @@ std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& j
       if (job.mesh.nodes[at(from.housing.node)].kind != meshes::NodeKind::ground)
         loop.housing = analysis::Point{from.housing.node, from.housing.offset};
       out.push_back(std::move(loop));
+      bearing_of_.push_back(c.bearing);
       loops_.push_back({fmt::format("{} axis {}", job.model.bearings[c.bearing].name, axis + 1)});
     }
   return out;
+}
+
+/// The motion that grows fastest, and the loop whose sensor sees most of it.
+void SensitivityRun::name_growth(const analysis::WhirlMode& fastest) {
+  const auto seen_by = [&](const analysis::OpenedLoop& loop) {
+    const auto along = [&](const analysis::Point& p) {
+      const analysis::PointAmplitude a = analysis::amplitude_at(s_.linear, fastest.x, p);
+      return loop.axis.x() * a.y + loop.axis.y() * a.z;
+    };
+    Complex moved = along(loop.shaft);
+    if (loop.housing) moved -= along(*loop.housing);
+    return std::abs(moved);
+  };
+  std::size_t most = 0;
+  for (std::size_t k = 1; k < opened_.size(); ++k)
+    if (seen_by(opened_[k]) > seen_by(opened_[most])) most = k;
+  const run::Job& job = s_.job;
+  Diagnostic d;
+  d.code = "W13";
+  d.message = fmt::format(
+      "step '{}': at {:.6g} rpm a motion of {:.5g} Hz grows with {:.3g} 1/s, most of it at the "
+      "sensor of {}: with its loops closed the machine is unstable, and sensitivities are no "
+      "margins",
+      s_.step.name, to_rpm(law_.speed), to_hz(fastest.frequency), fastest.lambda.real(),
+      loops_[most].name);
+  d.hint = "a modal step lists what grows; check signs, gains and delays of that controller";
+  d.where = job.model.bearings[bearing_of_[most]].where;
+  results::warn(s_.job, std::move(d));
 }
 
 /// Its modes up to the end of the range, where the curves are steep, and what grows at all.
@@ -98,6 +129,11 @@ void SensitivityRun::judge_stability() {
       if (w > grid_.front() && w < grid_.back()) grid_.push_back(w);
     }
   }
+  const auto fastest = std::max_element(
+      modes.begin(), modes.end(), [](const analysis::WhirlMode& a, const analysis::WhirlMode& b) {
+        return a.lambda.real() < b.lambda.real();
+      });
+  if (fastest != modes.end() && fastest->growth() > 0) name_growth(*fastest);
   counted_ = certificate.complete();
   if (!certificate.stability_certain()) counted_to_ = certificate.list.radius;
   s_.certify(certificate);

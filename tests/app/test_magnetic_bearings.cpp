@@ -349,6 +349,7 @@ TEST(MagneticBearings, EquilibriumIsNotCalledStableWhereControlDecides) {
     EXPECT_TRUE(d.says("whether controllers hold it is for a modal")) << d.log;
     EXPECT_TRUE(d.says("2 diverging")) << d.log;
     EXPECT_TRUE(d.says("unstable: 2 growing motions, sensitivities are no margins")) << d.log;
+    EXPECT_TRUE(d.says("W13") && d.says("most of it at the sensor of")) << d.log;
   }
   std::string second = control(1.5e4, 0, 32);
   second.replace(second.find("control"), 7, "control_2");
