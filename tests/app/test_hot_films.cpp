@@ -246,6 +246,20 @@ TEST(HotFilms, BadInput) {
 }
 
 // A motion keeps the temperatures it begins with, and says what that leaves out.
+// Load in steps ends where the whole load at once does: temperatures stay while the load grows.
+TEST(HotFilms, LoadInSteps) {
+  const auto place = [](const std::string& more) {
+    const DeckRun d(
+        rotor(four_pads + heat(), 10e3,
+              "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"4000 rpm\"\n" + more));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    const Columns c = d.csv("st_coefficients.csv");
+    return c.rows.at(0).at(c.column("z [m]"));
+  };
+  const double at_once = place(""), in_steps = place("load_steps = 4\n");
+  EXPECT_NEAR(in_steps, at_once, 1e-5 * std::abs(at_once));
+}
+
 TEST(HotFilms, MotionKeepsTemperatures) {
   const std::string steps =
       "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"4000 rpm\"\n"

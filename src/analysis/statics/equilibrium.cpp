@@ -455,7 +455,9 @@ bool EquilibriumSolver::load_in_steps(double Omega, double t, Equilibrium& out) 
   const double full = running_.load();
   const double largest = options_.load_steps > 1 ? 1.0 / options_.load_steps : 1.0;
   double done = 0.0, step = std::min(0.25, largest);
+  const std::vector<double> values = s.frames.kept;  // temperatures of films stay
   s = running_.system().make_state();
+  s.frames.kept = values;
   s.t = t;
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
