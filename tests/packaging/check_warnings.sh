@@ -21,6 +21,15 @@ else
   mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '^src/python/\|^$' || true)
 fi
 [ ${#files[@]} -gt 0 ] || { echo "no source differs"; exit 0; }
+# a source that differs and includes its own header before all others speaks for both
+spoken_for() {
+  local own=${1%.hpp}.cpp
+  [ "$own" != "$1" ] && printf '%s\n' "${files[@]}" | grep -qx "$own" && grep -m 1 '^#include' "$own" | grep -q "/$(basename "$1")>"
+}
+alone=()
+for file in "${files[@]}"; do
+  spoken_for "$file" || alone+=("$file")
+done
 parse() {
   echo "#include \"$1\"" |
     g++ -x c++ - -std=c++20 -fsyntax-only -Wall -Wextra -Wshadow -Wconversion -Wno-psabi -Wno-unused-function -Werror \
@@ -28,4 +37,4 @@ parse() {
       ${PYTHON_FLAGS:-} '-DWHIRL_VERSION=""' '-DWHIRL_BUILD_TYPE=""'
 }
 export -f parse
-printf '%s\0' "${files[@]}" | xargs -0 -P "$(nproc)" -I{} bash -c 'parse {}'
+printf '%s\0' "${alone[@]}" | xargs -0 -P "$(nproc)" -I{} bash -c 'parse {}'
