@@ -37,7 +37,7 @@ class PadInState {
       f.theta.push_back(theta);
       f.thickness.push_back(thickness(theta));
       f.pressure.push_back(unit * profile.pressure[i]);
-      f.middle.push_back(film_.peak * f.pressure.back());
+      f.largest.push_back(film_.peak * f.pressure.back());
       f.slope.push_back(unit * profile.slope[i]);
       f.viscosity.push_back(viscosity(offset[i]));
       const int wet = film_at(offset[i]);
@@ -195,7 +195,7 @@ FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoin
   GridField g = (*film.grid)[pad].field(drive);
   // the pressure at the ends is known
   if (!arc.round)
-    for (auto* values : {&g.mean, &g.middle}) {
+    for (auto* values : {&g.mean, &g.largest}) {
       values->insert(values->begin(), drive.edge);
       values->push_back(drive.edge);
     }
@@ -219,7 +219,7 @@ FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoin
     f.theta.push_back(arc.start + at);
     f.thickness.push_back(gap.pad * thickness);
     f.pressure.push_back(unit * between(places, g.mean, at));
-    f.middle.push_back(unit * between(places, g.middle, at));
+    f.largest.push_back(unit * between(places, g.largest, at));
     f.slope.push_back(unit * (between(places, g.mean, high) - between(places, g.mean, low)) /
                       (high - low));
     f.viscosity.push_back(film.viscosity);
@@ -241,7 +241,7 @@ void stand_on_grid(const FiniteJournal& film, std::size_t pad, const FilmPoint& 
   s.highest = film.pressure_unit(film.gap(pad, p)) * g.highest;
   s.highest_at = arc.start + g.highest_at;
   s.inflow = unit * (forward ? g.flow.front() : -g.flow.back());
-  s.outflow = unit * (forward ? g.flow.back() : -g.flow.front());
+  s.outflow = unit * ((forward ? g.flow.back() : -g.flow.front()) + g.into_open);
   s.side_flow = unit * g.side;
 }
 
@@ -290,8 +290,8 @@ FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const Fil
   s.force = -force.F;
   s.power = force.pump - (force.F.dot(p.w) + force.T * p.slip);
   for (std::size_t i = 0; i < samples; ++i) {
-    if (f.middle[i] > s.highest) {
-      s.highest = f.middle[i];
+    if (f.largest[i] > s.highest) {
+      s.highest = f.largest[i];
       s.highest_at = f.theta[i];
     }
     s.reynolds = std::max(

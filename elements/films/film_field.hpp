@@ -18,7 +18,7 @@ struct FilmField {
   std::vector<double>
       thickness;  ///< h, m; of a pad with recesses in the middle, or beside a relief track
   std::vector<double> pressure;   ///< axial mean P above ambient, Pa
-  std::vector<double> middle;     ///< pressure in the middle of the length, Pa
+  std::vector<double> largest;    ///< pressure where it is largest along the axis, Pa
   std::vector<double> slope;      ///< dP/dtheta, Pa/rad
   std::vector<double> viscosity;  ///< eta, Pa s
   std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it
@@ -27,12 +27,14 @@ struct FilmField {
 
 /// One pad's film.
 struct FilmStanding {
-  Vec2 force = Vec2::Zero();             ///< on the pad, N
-  double power = 0;                      ///< turned into heat, W
-  double inflow = 0, outflow = 0;        ///< through the leading and the trailing edge, m3/s
-  double side_flow = 0;                  ///< at both sides, m3/s
+  Vec2 force = Vec2::Zero();  ///< on the pad, N
+  double power = 0;           ///< turned into heat, W
+  double inflow = 0,
+         outflow = 0;    ///< through the leading and the trailing edge (with what a relief
+                         ///< track takes up), m3/s
+  double side_flow = 0;  ///< at both sides, m3/s
   double thinnest = 0, thinnest_at = 0;  ///< smallest thickness, m, and where, rad
-  double highest = 0, highest_at = 0;    ///< largest pressure (in the middle), Pa, and where, rad
+  double highest = 0, highest_at = 0;    ///< largest pressure, Pa, and where, rad
   double reynolds = 0;                   ///< largest rho R |s| h/eta; 0 where no density is given
 };
 

@@ -314,7 +314,7 @@ namespace {
 
 /// Of a film that nothing drives: 1/pi int G(n) n^T dphi, as PadFilm::mean_slope.
 Mat2 mean_slope(const GridPad& pad, const GridDrive& at_rest) {
-  constexpr int directions = 24;
+  constexpr int directions = 12;
   GridDrive in = at_rest;
   GridLoad load;
   Mat2 C = Mat2::Zero();
@@ -362,7 +362,8 @@ void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f, FilmTange
     const GridDrive in = drive(k, p);
     (*grid)[k].load(in, load, by);
     if (in.source.isZero(0.0) && in.edge == 0.0)
-      by.by_source.topLeftCorner<2, 2>() = mean_slope((*grid)[k], in);
+      by.by_source.topLeftCorner<2, 2>() =
+          mean_slope((grid_at_rest ? *grid_at_rest : *grid)[k], in);
     const Gap g = gap(k, p);
     const double c = g.pad, unit = pressure_unit(g) * radius * length;
     const double drag = viscosity * std::pow(radius, 3) * length / c;

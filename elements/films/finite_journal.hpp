@@ -108,6 +108,9 @@ struct FiniteJournal {
   /// One a pad where the pressure is found on a grid along the axis too, which recesses need
   /// (grid_film.hpp); null: the axial profile.
   std::shared_ptr<const std::vector<GridPad>> grid{};
+  /// Coarser ones for the many solutions that the linear law of a journal at rest is the mean of; null:
+  /// the grid itself.
+  std::shared_ptr<const std::vector<GridPad>> grid_at_rest{};
   /// Axial profile: leakage/L^2 is the outflow term and `source` eta the source of (h^3 P')'/R^2 -
   /// leakage/L^2 h^3 P = source eta f.
   double leakage = 10, source = 10;

@@ -409,6 +409,9 @@ void GridPad::Solver::couple(std::size_t k, std::size_t l, double by) {
 /// the place 1/2 + P(0)/a beyond.
 double GridPad::Solver::to_front(std::size_t before, std::size_t last) const {
   if (before >= side || !film_[before]) return 1.0;
+  // a film of two nodes has no parabola
+  const std::size_t third = 2 * before - last;
+  if (third >= size_ || !film_[third] || P_[third] < P_[before]) return 1.0;
   const double curvature = P_[before] - 2.0 * P_[last];
   return curvature > P_[last] ? 0.5 + P_[last] / curvature : 1.5;
 }
@@ -607,21 +610,20 @@ GridField GridPad::Solver::field() const {
   out.thinnest = infinity;
   for (std::size_t i = 0; i < n_; ++i) {
     const Cell& cell = pad_.cells_[i];
-    double mean = 0.0;
-    bool any = false;
+    double mean = 0.0, most_there = 0.0;
     for (std::size_t j = 0; j < m_; ++j) {
       const double P = P_[at(i, j)];
       for (const Piece& x : pieces(j))
         mean += x.share * P;
-      any = any || P > 0.0;
+      most_there = std::max(most_there, P);
       if (P <= out.highest) continue;
       out.highest = P;
       out.highest_at = 0.5 * (cell.from + cell.to);
     }
     out.place.push_back(0.5 * (cell.from + cell.to));
     out.mean.push_back(mean);
-    out.middle.push_back(P_[at(i, 0)]);
-    out.wet.push_back(any ? 1 : 0);
+    out.largest.push_back(most_there);
+    out.wet.push_back(most_there > 0.0 ? 1 : 0);
     bool shown = false;
     for (std::size_t g = 0; g < bands_; ++g) {
       if (pad_.open(i, g)) continue;
@@ -659,41 +661,37 @@ void GridPad::Solver::add_flow(GridField& out) const {
   out.flow.assign(n_ + 1, 0.0);
   for (std::size_t f = 0; f <= n_; ++f)
     out.face_place.push_back(f < n_ ? pad_.cells_[f].from : pad_.cells_[n_ - 1].to);
-  // at the side itself nothing but what is dragged
-  for (std::size_t f = 0; f <= n_; ++f) {
-    const std::size_t own = pad_.round_ && f == n_ ? 0 : f;
-    const Stretch x = face(own, bands_ - 1);
-    const double angle = pad_.start_ + out.face_place[f];
-    const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
-    out.flow[f] = pad_.side_share_ * S * (in_.clearance * circle + x.s / x.r);
-  }
-  out.side += out.flow.front() - out.flow.back();
   std::array<double, most_columns + 1> flow;
-  for (std::size_t j = 0; j < m_; ++j)
-    for (const Piece& piece : pieces(j)) {
-      double now = nan, least = infinity;
-      for (std::size_t step = 0; step <= n_; ++step) {
-        const std::size_t f = forward ? step : n_ - step, own = pad_.round_ && f == n_ ? 0 : f;
-        const std::size_t l = node(left_of(own), j), r = node(right_of(own), j);
-        const double angle = pad_.start_ + out.face_place[f];
-        const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
-        const Stretch x = face(own, piece.band);
-        const bool in_track = (l < side && open_[l]) || (r < side && open_[r]);
-        const double dragged = S * (in_.clearance * circle + x.s / x.r);
-        if (!in_track && std::abs(dragged) < std::abs(least)) least = dragged;
-        if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0))
-          now = dragged - (pressure(r) - pressure(l)) / x.r;
-        flow[f] = now;
-      }
-      // a row without film; all of it a track: no film at all
-      double next = std::isfinite(least) ? least : 0.0;
-      for (std::size_t step = n_ + 1; step-- > 0;) {
-        const std::size_t f = forward ? step : n_ - step;
-        if (std::isnan(flow[f])) flow[f] = next;
-        next = flow[f];
-        out.flow[f] += piece.share * flow[f];
-      }
+  const auto add_row = [&](std::size_t j, std::size_t band, double share, bool at_side) {
+    double now = nan, least = infinity;
+    for (std::size_t step = 0; step <= n_; ++step) {
+      const std::size_t f = forward ? step : n_ - step, own = pad_.round_ && f == n_ ? 0 : f;
+      const std::size_t l = node(left_of(own), j), r = node(right_of(own), j);
+      const double angle = pad_.start_ + out.face_place[f];
+      const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
+      const Stretch x = face(own, band);
+      const bool in_track = (l < side && open_[l]) || (r < side && open_[r]);
+      const double dragged = S * (in_.clearance * circle + x.s / x.r);
+      const double pushed = at_side ? 0.0 : (pressure(r) - pressure(l)) / x.r;
+      if (!in_track && std::abs(dragged) < std::abs(least)) least = dragged;
+      if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0)) now = dragged - pushed;
+      flow[f] = now;
     }
+    // a row without film; all of it a track: no film at all
+    double next = std::isfinite(least) ? least : 0.0;
+    for (std::size_t step = n_ + 1; step-- > 0;) {
+      const std::size_t f = forward ? step : n_ - step;
+      if (std::isnan(flow[f])) flow[f] = next;
+      next = flow[f];
+      out.flow[f] += share * flow[f];
+    }
+  };
+  for (std::size_t j = 0; j < m_; ++j)
+    for (const Piece& piece : pieces(j))
+      add_row(j, piece.band, piece.share, false);
+  // the side itself drags along what the film beside it has, and lets go of the rest
+  add_row(m_ - 1, bands_ - 1, pad_.side_share_, true);
+  out.side += pad_.side_share_ * (flow[0] - flow[n_]);
 }
 
 void GridPad::load(const GridDrive& in, GridLoad& out) const {

@@ -64,7 +64,7 @@ struct GridSlopes {
 /// Pressures and flows on the grid, for results.
 struct GridField {
   std::vector<double> place;             ///< of the columns: rad from the start of the pad
-  std::vector<double> mean, middle;      ///< P: mean along the axis, and at its middle
+  std::vector<double> mean, largest;     ///< P: mean along the axis, and largest there
   std::vector<double> thickness;         ///< h at the middle, or beside an open recess there
   std::vector<unsigned char> wet;        ///< film somewhere along the axis
   std::vector<double> face_place, flow;  ///< of the faces between them: mean of q over the length

@@ -156,12 +156,12 @@ std::vector<elements::Recess> recesses_of(const model::FiniteJournal& law, std::
   }
   if (law.shape != Shape::pressure_dam && law.shape != Shape::tapered_land) return {};
   elements::Recess r;
-  r.to = law.recess_arc;
+  r.to = std::min(law.recess_arc, arc);
   r.depth_from = law.recess_depth;
   r.depth_to = law.shape == Shape::pressure_dam ? law.recess_depth : 0.0;
   r.width = law.recess_width / law.length;
   if (law.leading_at_end) {
-    r.from = arc - law.recess_arc;
+    r.from = arc - r.to;
     r.to = arc;
     std::swap(r.depth_from, r.depth_to);
   }
@@ -187,14 +187,18 @@ void put_on_grid(elements::FiniteJournal& film, FilmGrid grid, const RecessesOf&
   double total = 0.0;
   for (const elements::JournalSurface::Arc& arc : film.surface->arcs())
     total += arc.length;
-  std::vector<elements::GridPad> pads;
+  std::vector<elements::GridPad> pads, at_rest;
   for (std::size_t k = 0; k < film.surface->arcs().size(); ++k) {
     const elements::JournalSurface::Arc& arc = film.surface->arcs()[k];
     const int columns =
         std::max(fewest, static_cast<int>(std::lround(grid.points * arc.length / total)));
     pads.emplace_back(arc.start, arc.length, arc.round, film.radius / film.length, columns,
                       grid.rows, recesses(k, arc.length));
+    at_rest.emplace_back(arc.start, arc.length, arc.round, film.radius / film.length,
+                         std::clamp(columns / 4, fewest, columns), std::min(grid.rows, 4),
+                         recesses(k, arc.length));
   }
+  film.grid_at_rest = std::make_shared<const std::vector<elements::GridPad>>(std::move(at_rest));
   film.grid = std::make_shared<const std::vector<elements::GridPad>>(std::move(pads));
   film.leakage = film.source = 12.0;  // of Reynolds' equation itself
 }

@@ -160,7 +160,7 @@ FilmCurves curves_of(const FilmResults& f) {
       }
     });
   };
-  out.pressure = field("pressure", 1e-6, &elements::FilmField::middle);
+  out.pressure = field("pressure", 1e-6, &elements::FilmField::largest);
   out.thickness = field("film thickness", 1e6, &elements::FilmField::thickness);
   out.thickness.style = {1, plot::Dash::dashed, 1.6};
   if (!f.heat) return out;
@@ -183,7 +183,7 @@ plot::Figure draw_unrolled(const std::string& name, const SupportCoefficients& c
   plot::Figure f;
   f.name = name;
   f.title = fmt::format("Films of '{}' at {:.6g} rpm, unrolled", c.name, to_rpm(c.spin));
-  f.caption = "Pressure in the middle of the bearing's length, above ambient; angles from y to z.";
+  f.caption = "Largest pressure along the bearing's axis, above ambient; angles from y to z.";
   FilmCurves curves = curves_of(*c.films);
   plot::Axes a;
   a.x = plot::Axis("angle", "deg");
@@ -244,11 +244,11 @@ io::Table film_table(std::span<const SupportCoefficients> list) {
                {"film load", "N", "on the pad"},
                {"power loss", "W", "in its film"},
                {"inflow", "m^3/s", "through the leading edge"},
-               {"outflow", "m^3/s", "through the trailing edge"},
+               {"outflow", "m^3/s", "through the trailing edge, and by a relief track"},
                {"side flow", "m^3/s", "at both sides"},
                {"smallest film", "m", ""},
                {"angle of smallest film", "deg", "from +y towards +z"},
-               {"largest pressure", "Pa", "above ambient, in the middle of the length"},
+               {"largest pressure", "Pa", "above ambient"},
                {"angle of largest pressure", "deg", ""},
                {"Reynolds number", "-", "largest rho R |s| h/eta"},
                {"effective viscosity", "Pa s", "mean along the pad"},

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 namespace whirl::results {
 
@@ -282,6 +283,34 @@ bool is_loaded(const SupportCoefficients& c) {
   return c.load > 0 && !(c.place.norm() <= rounding * c.clearance);
 }
 
+/// A journal at rest in its bearing.
+elements::LateralMotion journal_in(const run::Job& job, std::size_t bearing,
+                                   const system::Workspace& w) {
+  const meshes::BearingNodes& n = job.mesh.bearings[bearing];
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  const auto place = [&](const meshes::Place& p) {
+    return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
+  };
+  elements::LateralMotion m;
+  m.r = place(n.shaft) - place(n.other);
+  m.v.setZero();
+  m.a.setZero();
+  m.spin = node(n.shaft.node).spin();
+  m.housing_spin = node(n.other.node).spin();
+  m.kept = node(n.shaft.node).kept;
+  return m;
+}
+
+/// K and C of a film beside other supports on its node.
+std::pair<Mat2, Mat2> own_coefficients(const model::FiniteJournal& law, const run::Job& job,
+                                       std::size_t bearing, const system::Workspace& w) {
+  elements::FiniteJournal film = assembly::make_finite_journal(law, assembly::own_grid(law));
+  for (const assembly::FilmBearing& x : job.built.films)
+    if (x.bearing == bearing) film.kept_from = x.kept_from;
+  const std::array<Mat2, 2> both = film_tangent(film, journal_in(job, bearing, w));
+  return {both[0], both[1]};
+}
+
 /// Spin, place, load and its attitude, gap of a support in an evaluated state.
 void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                     const system::Workspace& w) {
@@ -300,13 +329,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
     c.attitude = std::remainder(c.attitude, 360.0);
   }
   if (const auto* law = std::get_if<model::FiniteJournal>(&job.model.bearings[bearing].law)) {
-    elements::LateralMotion m;
-    m.r = c.place;
-    m.v.setZero();
-    m.a.setZero();
-    m.spin = c.spin;
-    m.housing_spin = node(n.other.node).spin();
-    m.kept = node(n.shaft.node).kept;
+    const elements::LateralMotion m = journal_in(job, bearing, w);
     for (const assembly::FilmBearing& film : job.built.films)
       if (film.bearing == bearing) {
         c.grid_error =
@@ -377,6 +400,8 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
         const double axial = force_on_shaft(support, w).x();
         c.K5 = at_point(matrices.K.block(slot), n.shaft.offset, axial);
       }
+    } else if (const auto* film = std::get_if<model::FiniteJournal>(&b.law)) {
+      std::tie(c.K, c.C) = own_coefficients(*film, job, i, w);
     } else {  // two of a kind on one node stand in one block
       c.K = differences(support, w, n.shaft.node, &system::NodeState::u, 1e-9);
       c.C = differences(support, w, n.shaft.node, &system::NodeState::du, 1e-6);

@@ -53,6 +53,18 @@ bool asks_for_twist(const run::Job& job, const model::TransientStep& law,
   });
 }
 
+/// Nodes that take as long in a step as the model does: a film on a grid counts as some thousand.
+long nodes_of_work(const run::Job& job) {
+  constexpr long of_a_film = 3000;
+  long sum = std::max<long>(static_cast<long>(job.mesh.nodes.size()), 1);
+  for (const model::Bearing& b : job.model.bearings) {
+    const auto* journal = std::get_if<model::FiniteJournal>(&b.law);
+    const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
+    if ((journal && journal->rows > 0) || (pads && pads->rows > 0)) sum += of_a_film;
+  }
+  return sum;
+}
+
 analysis::TransientOptions transient_options(const run::Job& job, const model::TransientStep& law,
                                              double t0) {
   analysis::TransientOptions t;
@@ -61,8 +73,7 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   t.interrupt = &run::interrupted();
   // marks about a quarter of a second of computing apart, counted in steps: the motion must not
   // depend on the clock
-  t.steps_between_marks = std::clamp<long>(
-      50000 / std::max<long>(static_cast<long>(job.mesh.nodes.size()), 1), 20, 1000);
+  t.steps_between_marks = std::clamp<long>(50000 / nodes_of_work(job), 8, 1000);
   t.checkpoint_seconds = law.checkpoint > 0.0 ? law.checkpoint : infinity;
   time::Options& o = t.integrator;
   o.tolerance = law.integrator.tolerance;

@@ -199,6 +199,7 @@ TEST(RecessedJournals, WidthsAndArcsDoWhatTheyAreFor) {
   EXPECT_LT(apart(film_of(film + taper + "taper_width = \"70 mm\"\n"), land), 1e-12);
   EXPECT_GT(apart(film_of(film + taper + "taper_width = \"40 mm\"\n"), land), 0.02);
   EXPECT_GT(apart(film_of(film + with(taper, "60 deg", "30 deg")), land), 0.02);
+  EXPECT_GT(apart(film_of(film + with(taper, "60 deg", "100 deg")), land), 0.02);  // no land left
   EXPECT_GT(apart(film_of(film + with(taper, "lands = 3", "lands = 4")), land), 0.05);
   EXPECT_GT(apart(film_of(film + with(taper, "\"20 deg\"", "\"40 deg\"")), land), 0.02);
 }
@@ -289,6 +290,56 @@ TEST(RecessedJournals, FilmsAndTheirFlows) {
   EXPECT_NEAR(load, 1000.0, 1e-6);
 }
 
+TEST(RecessedJournals, RupturedFilmsLetOutWhatTheProfileDoes) {
+  const auto side = [&](const std::string& more) {
+    const DeckRun d(rotor(film + "shape = \"two_grooves\"\n" + more,
+                          "[[step]]\nname = \"films\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n"));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    const Columns c = d.csv("films_films.csv");
+    std::vector<double> out;
+    for (const std::vector<double>& row : c.rows)
+      out.push_back(row.at(c.column("side flow [m^3/s]")));
+    return out;
+  };
+  const std::vector<double> profile = side(""), grid = side("axial_grid = 6\n");
+  ASSERT_EQ(profile.size(), grid.size());
+  // the upper pad, hardly wet; the lower one; the bearing
+  EXPECT_NEAR(grid[0], profile[0], 0.01 * profile[1]);
+  EXPECT_GT(grid[0], 0.0);
+  EXPECT_NEAR(grid[1], profile[1], 0.02 * profile[1]);
+  EXPECT_NEAR(grid[2], profile[2], 0.02 * profile[2]);
+}
+
+// A track that crosses all of a pad takes up oil, and stands nowhere in the middle: what is shown and
+// listed is what is largest along the axis, and what comes in leaves.
+TEST(RecessedJournals, TheOilOfATrackAndItsPressure) {
+  const DeckRun d(
+      rotor(film + dam, "[[step]]\nname = \"films\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns c = d.csv("films_films.csv");
+  const std::vector<double>& lower = c.rows.at(1);
+  const auto of = [&](const char* name) { return lower.at(c.column(name)); };
+  EXPECT_GT(of("largest pressure [Pa]"), 3e5);
+  const double in = of("inflow [m^3/s]"),
+               track = of("outflow [m^3/s]") - (in - of("side flow [m^3/s]"));
+  EXPECT_LT(std::abs(track), 0.05 * in);
+}
+
+// The linear law of a film is that of its kernel whatever stands beside it on its node.
+TEST(RecessedJournals, ANeighbourOnTheNodeChangesNoCoefficient) {
+  const std::string step = "[[step]]\nname = \"films\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n";
+  const std::string deck = rotor(film + dam, step);
+  const DeckRun beside(deck), apart_from(with(deck, "at = \"body:start\"\ntype = \"linear\"",
+                                              "at = \"body:mid\"\ntype = \"linear\""));
+  ASSERT_EQ(beside.exit + apart_from.exit, 0) << beside.log;
+  const Columns a = beside.csv("films_coefficients.csv"),
+                b = apart_from.csv("films_coefficients.csv");
+  for (const char* name : {"kyy [N/m]", "kyz [N/m]", "kzz [N/m]", "cyy [N s/m]", "czz [N s/m]"}) {
+    const double x = a.rows.at(0).at(a.column(name)), y = b.rows.at(0).at(b.column(name));
+    EXPECT_NEAR(x, y, 1e-6 * std::abs(y)) << name;
+  }
+}
+
 TEST(RecessedJournals, WhatCannotBeIsRefused) {
   const std::string step = "[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n";
   const auto refused = [&](const std::string& bearing, const char* code, const char* word) {
@@ -311,4 +362,7 @@ TEST(RecessedJournals, WhatCannotBeIsRefused) {
   refused(film + "shape = \"grooves\"\naxial_groove = [{ at = \"0 deg\" }, { at = \"10 deg\" }]\n",
           "E14", "touch");
   refused(film + "shape = \"grooves\"\n", "E05", "axial_groove");
+  refused(film + "shape = \"grooves\"\naxial_groove = []\n", "E05", "axial_groove");
+  refused(film + with(with(taper, "lands = 3", "lands = 8"), "\"20 deg\"", "\"45 deg\""), "E14",
+          "leave nothing");
 }
