@@ -99,7 +99,9 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
   bands_ = widths.size() - 1;
   if (bands_ > most_bands || (round && bands_ > 1))
     recess_fault("too many recesses on one pad for its grid");
-  const double gauss[2] = {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
+  // of a cell's halves, in units of a half
+  const double first = 0.5 - 0.5 / std::sqrt(3.0), second = 0.5 + 0.5 / std::sqrt(3.0);
+  const double gauss[4] = {first, second, 1.0 + first, 1.0 + second};
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     Cell cell;
     cell.from = edges[i];
@@ -107,7 +109,7 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
     const double a = start + cell.from, b = start + cell.to, half = 0.5 * (b - a);
     cell.normal = Vec2(std::sin(b) - std::sin(a), std::cos(a) - std::cos(b));
     for (std::size_t q = 0; q < 4; ++q) {
-      const double angle = a + half * (static_cast<double>(q / 2) + gauss[q % 2]);
+      const double angle = a + half * gauss[q];
       cell.points[q] = {std::cos(angle), std::sin(angle), 0.5 * half};
     }
     cells_.push_back(cell);
@@ -119,7 +121,7 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
         if (middle > r.width || cell.from < r.from - 1e-9 || cell.to > r.to + 1e-9) continue;
         open = r.open ? 1 : 0;
         for (std::size_t q = 0; q < 4; ++q) {
-          const double at = cell.from + half * (static_cast<double>(q / 2) + gauss[q % 2]);
+          const double at = cell.from + half * gauss[q];
           depth[q] = r.depth_from + (r.depth_to - r.depth_from) * (at - r.from) / (r.to - r.from);
         }
       }

@@ -53,6 +53,7 @@ std::vector<Column> columns_that_vary(const Plan& plan, const Columns& c) {
 void leave_out(std::vector<Column>& columns) {
   if (columns.size() <= most_columns) return;
   std::vector<double> order;
+  order.reserve(columns.size());
   for (const Column& c : columns)
     order.push_back(c.importance);
   std::sort(order.rbegin(), order.rend());

@@ -162,7 +162,8 @@ using Surface = std::function<double(double, double)>;
 void fill(const Surface& value, const Range& x, const Range& y, const plot::Axis& of_response,
           plot::Axes& axes) {
   Corners corners{120, 90, x, y, {}};
-  corners.values.resize(static_cast<std::size_t>((corners.nx + 1) * (corners.ny + 1)));
+  corners.values.resize((static_cast<std::size_t>(corners.nx) + 1) *
+                        (static_cast<std::size_t>(corners.ny) + 1));
   for (int iy = 0; iy <= corners.ny; ++iy)
     for (int ix = 0; ix <= corners.nx; ++ix)
       corners.at(ix, iy) = value(corners.x_of(ix), corners.y_of(iy));
