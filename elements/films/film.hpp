@@ -45,6 +45,16 @@ struct FilmTangent {
   double T_slip = 0;
 };
 
+inline void set_zero(FilmForce& f, FilmTangent& t) {
+  f = {Vec2::Zero(), 0.0, 0.0};
+  t.F_r.setZero();
+  t.F_w.setZero();
+  t.F_slip.setZero();
+  t.T_r.setZero();
+  t.T_w.setZero();
+  t.T_slip = 0.0;
+}
+
 /// What a film returns outside its domain.
 inline void set_outside(FilmForce& f) {
   f.F.setConstant(nan);

@@ -145,14 +145,7 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) c
   if (!inside(p)) return set_outside(f, t);
   if (grid) return evaluate_on_grid(p, f, t);
   if (!isoviscous()) return evaluate_through(p, f, t);
-  f.F.setZero();
-  f.T = 0.0;
-  t.F_r.setZero();
-  t.F_w.setZero();
-  t.F_slip.setZero();
-  t.T_r.setZero();
-  t.T_w.setZero();
-  t.T_slip = 0.0;
+  set_zero(f, t);
   const double c = surface->pad_clearance(), half_lift = 0.5 * surface->lift();
   const double unit = source * viscosity * std::pow(radius / c, 3) * length;
   const double drag = viscosity * std::pow(radius, 3) * length / c;
@@ -259,13 +252,7 @@ void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f) const {
 }
 
 void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
-  f = {Vec2::Zero(), 0.0, 0.0};
-  t.F_r.setZero();
-  t.F_w.setZero();
-  t.F_slip.setZero();
-  t.T_r.setZero();
-  t.T_w.setZero();
-  t.T_slip = 0.0;
+  set_zero(f, t);
   for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
     if (carries_oil(k, p)) {
       add_carried(k, p, f, t);
@@ -349,13 +336,7 @@ void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f) const {
 }
 
 void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
-  f = {Vec2::Zero(), 0.0, 0.0};
-  t.F_r.setZero();
-  t.F_w.setZero();
-  t.F_slip.setZero();
-  t.T_r.setZero();
-  t.T_w.setZero();
-  t.T_slip = 0.0;
+  set_zero(f, t);
   GridLoad load;
   GridSlopes by;
   for (std::size_t k = 0; k < grid->size(); ++k) {

@@ -42,8 +42,8 @@
 //     moving front swallows;
 //   a viscosity that varies along each pad, and clearances that grow, by what the film keeps of the
 //     last equilibrium (film_heat.hpp). Both are constants to force and tangent.
-// Recesses: tapers, pockets of pressure dams, relief tracks, and any shape where no profile along the
-// axis is to be assumed, by finite volumes in both directions (grid_film.hpp): about 100 times dearer.
+// Recesses (tapers, pockets of pressure dams, relief tracks), and any shape where no profile along the
+// axis is to be assumed: on a grid in both directions (grid_film.hpp), some hundred times dearer.
 // Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
 // & Thomsen, ASME 1978 (Topics in Fluid Film Bearing and Rotor Bearing System Design and
 // Optimization, pp. 1-28).

@@ -140,6 +140,7 @@ void GridPad::add_rows(const std::vector<double>& elements, const std::vector<do
     std::size_t band = 0;
     while (middle > widths[band + 1])
       ++band;
+    band_shares_[band] += width;
     const std::size_t nodes[3] = {2 * e, 2 * e + 1, 2 * e + 2};
     const double shares[3] = {width / 6.0, 4.0 * width / 6.0, width / 6.0};
     for (std::size_t k = 0; k < 3; ++k)  // the side itself has no pressure
@@ -283,10 +284,7 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g) {
   const Cell& cell = pad_.cells_[i];
   const std::array<double, 4>& depth = pad_.depth(i, g);
   const bool open = pad_.open(i, g);
-  double share = 0.0;
-  for (const Across& x : pad_.across_)  // three an element, the first two alike
-    if (x.band == g && x.conductance < 0.0)
-      share -= 4.0 * pad_.ratio_ * pad_.ratio_ / (3.0 * x.conductance);
+  const double share = pad_.band_shares_[g];
   Section section{0.0, Vec3::Zero()};
   for (std::size_t half = 0; half < 2; ++half) {
     Half sum;
@@ -494,8 +492,7 @@ bool GridPad::Solver::take_film(double least, bool may_form) {
 }
 
 void GridPad::Solver::find_film() {
-  // Quadratic elements spoil the sign of one coupling in eight: should the film not settle for that, it
-  // may only shrink from some pass on.
+  // should the film not settle, it may only shrink from some pass on
   constexpr int most_passes = 200, free_passes = 60;
   constexpr double rounding = 1e-13;  // of the largest source
   double size = 0.0;

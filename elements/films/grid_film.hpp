@@ -9,23 +9,23 @@
 // the surface. a_x, a_z: 1/f of turbulence.hpp.
 //
 // Over half the length, finite volumes along the arc and quadratic elements along the axis. Along the
-// arc the flow between two neighbours is the exact one
-// of a film whose thickness varies between them, q = (S int D/h^3 - dP)/int 1/h^3 (A. A. Samarskii,
-// The Theory of Difference Schemes, 2001, doi 10.1201/9780203908518, ch. 3): a step in the surface lies
-// on a face and costs no accuracy. Along the axis a parabola is exact, and the edges of recesses are
-// edges of elements. The
-// complementarity problem is solved by policy iteration, which ends at its one solution where the
-// matrix is an M-matrix (O. Bokanowski, S. Maroso, H. Zidani, SIAM J. Numer. Anal. 47, 2009, doi
-// 10.1137/08073041X). Derivatives by the adjoint equation, to rounding where the film is full. Where it
-// ruptures they are those of a film whose front lies inside a cell, found from the pressures before
-// it, which is ten times closer to the truth than slopes of the discrete loads: those jump by some
-// 1e-2 as cells dry, the loads themselves by less than 1e-3.
+// arc the flow between two neighbours is the exact one of a film whose thickness varies between them,
+// q = (S int D/h^3 - dP)/int 1/h^3 (A. A. Samarskii, The Theory of Difference Schemes, 2001, doi
+// 10.1201/9780203908518, ch. 3): a step in the surface lies on a face and costs no accuracy. Along the
+// axis a parabola is exact, and the edges of recesses are edges of elements. The complementarity
+// problem is solved by policy iteration, which ends at its one solution where the matrix is an M-matrix
+// (O. Bokanowski, S. Maroso, H. Zidani, SIAM J. Numer. Anal. 47, 2009, doi 10.1137/08073041X); quadratic
+// elements spoil the sign of one coupling in eight. A film that does not settle has no force (NaN).
+// Derivatives by the adjoint equation, to rounding where the film is full. Where it ruptures they are
+// those of a film whose front lies inside a cell, found from the pressures before it, which is ten times
+// closer to the truth than slopes of the discrete loads: those jump by some 1e-2 as cells dry, the loads
+// themselves by less than 1e-3.
 //
 // With N = (W_y, W_z, S) and B the source of each, loads are z = B^T P: the force over (unit R L), and
 // the moment of pressure on the steps and slopes of recesses over (-unit R L/2).
 #pragma once
 #include <core/types.hpp>
-#include <memory>
+#include <array>
 #include <vector>
 
 namespace whirl::elements {
@@ -131,6 +131,7 @@ class GridPad {
   std::vector<Row> rows_;
   std::vector<Across> across_;
   double side_share_ = 0;  ///< of the length that the nodes at the side stand for
+  std::array<double, most_bands> band_shares_{};
   std::vector<std::array<double, 4>> depth_;
   std::vector<unsigned char> open_;
 };

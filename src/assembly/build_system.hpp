@@ -99,9 +99,9 @@ struct FloatingRingBearing {
   std::vector<Index> unknowns;  ///< scalar nodes: y, z, spin over spin_unit, temperatures
   double spin_unit = 1;         ///< rad/s a m
   std::function<elements::RingStanding(const NodeAt&)> standing;
-  /// Of shaft and ring, (y, z) of both, spin, temperatures: on all but a held spin. points: of the
-  /// grid on the circumference, 0: that of the bearing.
-  std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
+  /// Of shaft and ring, (y, z) of both, spin, temperatures: on all but a held spin. grid: of the films;
+  /// without points that of the bearing.
+  std::function<elements::PadCoefficients(const NodeAt&, const FilmGrid& grid)> coefficients;
 };
 
 /// The oil of a film that conserves mass, where the step follows it.

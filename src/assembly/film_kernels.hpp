@@ -15,9 +15,10 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, Fil
 /// Points round the circumference of the films of dampers.
 inline constexpr int damper_nodes = 72;
 
-/// The film of a damper of finite length or with sealed ends, on a grid of so many points.
+/// The film of a damper of finite length or with sealed ends, on a grid, along the axis too where it has
+/// rows.
 /// @pre a film with a grid: Film::finite or Film::sealed.
-elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int nodes);
+elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, FilmGrid grid);
 
 /// One a pad, in their order.
 /// @throws Error E84 as make_tilting_pad.

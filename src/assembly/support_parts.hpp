@@ -127,6 +127,7 @@ void set_flow(elements::FiniteJournal& film, const model::FilmFlow& flow, const 
 using RecessesOf = std::function<std::vector<elements::Recess>(std::size_t, double)>;
 /// As FilmGrid::uniform.
 void make_uniform(elements::FiniteJournal& film);
+inline std::vector<elements::Recess> no_recesses(std::size_t, double) { return {}; }
 /// From now on the pressure of a film is found on a grid along its axis too.
 void put_on_grid(elements::FiniteJournal& film, FilmGrid grid, const RecessesOf& recesses);
 /// A film bearing for results; with heat it becomes something that states keep. pads_at: its pads in

@@ -218,7 +218,7 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, Fil
   return film;
 }
 
-elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int nodes) {
+elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, FilmGrid grid) {
   using Film = model::SqueezeFilm::Film;
   WHIRL_EXPECTS(law.film == Film::finite || law.film == Film::sealed);
   elements::FiniteJournal film;
@@ -231,7 +231,9 @@ elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int node
     pads.push_back(
         {law.groove_at + 0.5 * law.groove, law.groove_at - 0.5 * law.groove + two_pi, 0.0});
   }
-  film.surface = std::make_shared<elements::JournalSurface>(law.clearance, 0.0, pads, nodes);
+  film.surface = std::make_shared<elements::JournalSurface>(
+      law.clearance, 0.0, pads, std::min(grid.points, elements::JournalSurface::max_nodes));
+  if (grid.rows > 0) put_on_grid(film, grid, no_recesses);
   return film;
 }
 
@@ -302,7 +304,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     else if (law.film == Film::full)
       add_damper(a, b, n, elements::ShortFullFilm{R, law.length, law.clearance, eta});
     else
-      add_damper(a, b, n, make_damper_film(law, damper_nodes));
+      add_damper(a, b, n, make_damper_film(law, {damper_nodes, 0, false}));
     follow_closely(a, n, law.clearance);
     a.built.conditions.push_back(
         {number_of(a, b), b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {

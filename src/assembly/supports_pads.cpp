@@ -55,9 +55,7 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
     elements::TiltingPad pad = elements::make_tilting_pad(g);
     set_flow(pad.film, law.flow, law.oil);
     if (grid.uniform) make_uniform(pad.film);
-    if (grid.rows > 0)
-      put_on_grid(pad.film, {points, grid.rows},
-                  [](std::size_t, double) { return std::vector<elements::Recess>{}; });
+    if (grid.rows > 0) put_on_grid(pad.film, {points, grid.rows}, no_recesses);
     pad.tilt_stiffness += law.tilt_stiffness;
     pad.inertia = law.inertia;
     pad.mass = law.mass;

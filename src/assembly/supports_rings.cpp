@@ -17,7 +17,7 @@ double film_viscosity(const model::FloatingRing& law, const model::FloatingRing:
                                     law.density);
 }
 
-void make_film(const model::FloatingRing& law, const model::FloatingRing::Film& f, int,
+void make_film(const model::FloatingRing& law, const model::FloatingRing::Film& f, const FilmGrid&,
                elements::ShortJournal& out) {
   out.radius = 0.5 * f.diameter;
   out.length = law.carrying_length(f);
@@ -25,13 +25,15 @@ void make_film(const model::FloatingRing& law, const model::FloatingRing::Film& 
   out.viscosity = film_viscosity(law, f);
 }
 
-void make_film(const model::FloatingRing& law, const model::FloatingRing::Film& f, int points,
-               elements::FiniteJournal& out) {
+void make_film(const model::FloatingRing& law, const model::FloatingRing::Film& f,
+               const FilmGrid& grid, elements::FiniteJournal& out) {
   out.radius = 0.5 * f.diameter;
   out.length = law.carrying_length(f);
   out.viscosity = film_viscosity(law, f);
   out.surface = std::make_shared<elements::JournalSurface>(
-      f.clearance, 0.0, std::vector<elements::JournalPad>{}, points);
+      f.clearance, 0.0, std::vector<elements::JournalPad>{},
+      std::min(grid.points, elements::JournalSurface::max_nodes));
+  if (grid.rows > 0) put_on_grid(out, grid, no_recesses);
 }
 
 elements::RingHeat make_heat(const model::FloatingRing& law) {
@@ -51,11 +53,11 @@ elements::RingHeat make_heat(const model::FloatingRing& law) {
 }
 
 template <class Film>
-elements::FloatingRing<Film> make_ring(const model::FloatingRing& law, int points) {
+elements::FloatingRing<Film> make_ring(const model::FloatingRing& law, const FilmGrid& grid) {
   elements::FloatingRing<Film> ring;
   for (const auto& [side, film] :
        {std::pair{&ring.inner, &law.inner}, std::pair{&ring.outer, &law.outer}}) {
-    make_film(law, *film, points, side->film);
+    make_film(law, *film, grid, side->film);
     side->radius = side->film.radius;
     side->length = side->film.length;
     side->viscosity = side->film.viscosity;
@@ -82,7 +84,7 @@ class RingOnNodes {
   RingOnNodes(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
               const model::FloatingRing& law)
       : law_(law) {
-    kernel_.ring = make_ring<Film>(law, law.nodes);
+    kernel_.ring = make_ring<Film>(law, {law.nodes, 0, false});
     kernel_.offset = {n.shaft.offset, n.other.offset};
     nodes_[0] = n.shaft.node;
     nodes_[1] = n.other.node;
@@ -111,9 +113,9 @@ class RingOnNodes {
   elements::RingStanding standing(const NodeAt& at) const {
     return kernel_.standing(states(at), {});
   }
-  elements::PadCoefficients coefficients(const NodeAt& at, int points) const {
+  elements::PadCoefficients coefficients(const NodeAt& at, const FilmGrid& grid) const {
     Kernel joint = kernel_;
-    if (points > 0) joint.ring = make_ring<Film>(law_, points);
+    if (grid.points > 0) joint.ring = make_ring<Film>(law_, grid);
     system::TangentX<Kernel::size> t;
     t.set_zero();
     joint.add_tangent(states(at), {}, t);
@@ -207,8 +209,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     if (node != n.shaft.node && node != n.other.node) out.unknowns.push_back(node);
   out.spin_unit = ring->kernel().ring.spin_unit();
   out.standing = [ring](const NodeAt& at) { return ring->standing(at); };
-  out.coefficients = [ring](const NodeAt& at, int points) {
-    return ring->coefficients(at, points);
+  out.coefficients = [ring](const NodeAt& at, const FilmGrid& grid) {
+    return ring->coefficients(at, grid);
   };
   for (const bool inner : {true, false})
     a.built.conditions.push_back(make_condition(a, b, ring, inner));

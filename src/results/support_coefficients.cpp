@@ -136,16 +136,17 @@ double grid_error_of(const model::FiniteJournal& law, const elements::LateralMot
 }
 
 /// Of a damper's film, which resists velocities alone.
-double grid_error_of(const model::SqueezeFilm& law, const Vec2& place) {
-  using Film = model::SqueezeFilm::Film;
-  if (law.film != Film::finite && law.film != Film::sealed) return nan;
-  const auto tangent = [&](int nodes) {
+double grid_error_of(const model::SqueezeFilm& law, const Vec2& place,
+                     const assembly::FilmGrid& other) {
+  const auto tangent = [&](const assembly::FilmGrid& grid) {
     elements::FilmForce force;
     elements::FilmTangent t;
-    assembly::make_damper_film(law, nodes).evaluate({place, Vec2::Zero(), 0.0}, force, t);
+    elements::FiniteJournal film = assembly::make_damper_film(law, grid);
+    film.grid_at_rest.reset();  // it is at rest that it is judged
+    film.evaluate({place, Vec2::Zero(), 0.0}, force, t);
     return std::array<Mat2, 2>{Mat2(t.F_r), Mat2(t.F_w)};
   };
-  return distance(tangent(assembly::damper_nodes), tangent(compared_with(assembly::damper_nodes)));
+  return distance(tangent({assembly::damper_nodes, 0, false}), tangent(other));
 }
 
 /// How far coefficients that the shaft sees are from those on a finer grid.
@@ -238,7 +239,7 @@ void describe_ring(SupportCoefficients& c, const run::Job& job, std::size_t bear
       r.starved_spin = std::sqrt(2.0 * law->supply_pressure /
                                  (law->density * (outside * outside - law->bore() * law->bore())));
     }
-    r.full = ring.coefficients(node, 0);
+    r.full = ring.coefficients(node, {});
     r.ratios = {1.0};
     for (const double ratio : law->frequency_ratios)
       if (ratio != 1.0) r.ratios.push_back(ratio);
@@ -247,9 +248,14 @@ void describe_ring(SupportCoefficients& c, const run::Job& job, std::size_t bear
     c.K = r.reduced.front().K;
     c.C = r.reduced.front().C;
     c.clearance = r.standing.inner.clearance + r.standing.outer.clearance;
-    if (law->theory != model::FloatingRing::Theory::brief)  // short films have no grid
-      c.grid_error = reduced_grid_error(ring.coefficients(node, compared_with(law->nodes)),
-                                        r.shaft_spin, r.reduced.front());
+    if (law->theory != model::FloatingRing::Theory::brief) {  // short films have no grid
+      const assembly::FilmGrid finer{compared_with(law->nodes), 0, false};
+      const auto error_against = [&](const assembly::FilmGrid& grid) {
+        return reduced_grid_error(ring.coefficients(node, grid), r.shaft_spin, r.reduced.front());
+      };
+      c.grid_error = error_against(finer);
+      c.axial_error = error_against(of_grid);
+    }
     c.ring = std::move(r);
   }
 }
@@ -281,6 +287,16 @@ Vec3 force_on_shaft(const assembly::SupportForce& support, const system::Workspa
 bool is_loaded(const SupportCoefficients& c) {
   constexpr double rounding = 1e-9;  // of the gap
   return c.load > 0 && !(c.place.norm() <= rounding * c.clearance);
+}
+
+/// Sealed ends have no profile along the axis to be wrong, short films no grid.
+void describe_damper(SupportCoefficients& c, const model::SqueezeFilm& law) {
+  using Film = model::SqueezeFilm::Film;
+  if (law.film != Film::finite && law.film != Film::sealed) return;
+  const assembly::FilmGrid finer{compared_with(assembly::damper_nodes), 0, false};
+  constexpr assembly::FilmGrid along_axis_too{120, 4, false};
+  c.grid_error = grid_error_of(law, c.place, finer);
+  if (law.film == Film::finite) c.axial_error = grid_error_of(law, c.place, along_axis_too);
 }
 
 /// A journal at rest in its bearing.
@@ -339,7 +355,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
       }
   }
   if (const auto* law = std::get_if<model::SqueezeFilm>(&job.model.bearings[bearing].law))
-    c.grid_error = grid_error_of(*law, c.place);
+    describe_damper(c, *law);
   for (const assembly::SupportCondition& x : job.built.conditions) {
     if (x.bearing != bearing) continue;
     c.clearance = x.state(node).gap;
@@ -488,7 +504,7 @@ std::string report_grid_error(io::Value& summary, std::span<const SupportCoeffic
   if (!axial || axial->axial_error <= worst->grid_error)
     return fmt::format("coefficients right to {} (film grid)", error_text(worst->grid_error));
   v["relative error by the axial profile"] = axial->axial_error;
-  return fmt::format("coefficients right to {} (axial profile of the film; its grid {})",
+  return fmt::format("coefficients right to {} (axial profile of the film), {} (film grid)",
                      error_text(axial->axial_error), error_text(worst->grid_error));
 }
 

@@ -76,7 +76,7 @@ struct SupportCoefficients {
   /// norm; of grids more than half as fine, from those on one half as fine, which is more than the
   /// error. NaN: no grid.
   double grid_error = nan;
-  /// Of journals and pads with one profile of the pressure along their axis: how far K and C are from
+  /// Of journals, pads, rings and dampers with one profile of the pressure along their axis: how far K and C are from
   /// those of a film that is solved along the axis too (grid_film.hpp; its own error is about 1e-3), at
   /// the same place and as isoviscous films, in the same norm. NaN: no such profile.
   double axial_error = nan;
@@ -96,7 +96,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
 /// By differences of fourth order.
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing);
 /// The largest grid error of a list into the summary of a step; "coefficients right to 2e-4 (film
-/// grid)", or nothing where no bearing has a grid.
+/// grid)", or what the profile along the axis leaves, or nothing where no bearing has a grid.
 std::string report_grid_error(io::Value& summary, std::span<const SupportCoefficients> list);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);

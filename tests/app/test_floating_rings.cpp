@@ -336,6 +336,10 @@ outer = { diameter = "13 mm", length = "7 mm", clearance = "40 um", temperature 
   EXPECT_LT(finite.film("grid error [-]"), 1e-3);
   const Rings finer = rings_of(rotor(small_ring + "grid = 144\n", still(rated), 20.0));
   EXPECT_LE(finer.film("grid error [-]"), finite.film("grid error [-]"));
+  // what one profile along the axis leaves is the larger part
+  EXPECT_GT(finite.film("axial error [-]"), finite.film("grid error [-]"));
+  EXPECT_LT(finite.film("axial error [-]"), 0.03);
+  EXPECT_TRUE(std::isnan(plain.film("axial error [-]")));
 }
 
 // A pinned ring: the outer film carries nothing at rest, the spring the load, the pin the drag.

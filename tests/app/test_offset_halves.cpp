@@ -1,6 +1,7 @@
 // Offset halves: two lobes of a journal bearing, tightest where they end, against the two-dimensional
 // Reynolds equation, the cylinder and their mirror image.
 #include "deck_run.hpp"
+#include "film_rotor.hpp"
 
 #include <core/types.hpp>
 #include <fmt/format.h>
@@ -26,50 +27,17 @@ struct Film {
 
 /// A rotor on two bearings that carry `load` (N) each.
 std::string rotor(const std::string& shape, double length, double load, const char* speed) {
-  const auto bearing = [&](const char* name, const char* at) {
-    return fmt::format(R"([[bearing]]
-name = "{}"
-at = "body:{}"
-type = "journal"
+  const std::string bearing = fmt::format(R"(type = "journal"
 diameter = "100 mm"
 length = "{:.17g} m"
 clearance = "100 um"
 viscosity = "20 mPa.s"
 {}
 )",
-                       name, at, length, shape);
-  };
-  return fmt::format(R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[[shaft]]
-name = "rotor"
-[[shaft.section]]
-name = "body"
-length = "1 m"
-rigid = true
-[[disk]]
-name = "mass"
-at = "body:mid"
-mass = "200 kg"
-Ip = "1 kg.m^2"
-Id = "10 kg.m^2"
-[[load]]
-at = "body:mid"
-force = ["0 N", "0 N", "{:.17g} N"]
-[[bearing]]
-name = "thrust"
-at = "body:start"
-type = "linear"
-kxx = "1e8 N/m"
-{}{}[[step]]
-name = "films"
-type = "static"
-speed = "{}"
-[output]
-report = false
-)",
-                     -2 * load, bearing("DE", "start"), bearing("NDE", "end"), speed);
+                                          length, shape);
+  const std::string step =
+      fmt::format("[[step]]\nname = \"films\"\ntype = \"static\"\nspeed = \"{}\"\n", speed);
+  return whirl::test::film_rotor(bearing, load, step);
 }
 
 /// What its static step says of a bearing.

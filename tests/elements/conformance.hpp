@@ -54,6 +54,23 @@ struct ConformanceOptions {
   unsigned seed = 1;
 };
 
+/// Motions of a journal in a film of clearance c (m) at a spin (rad/s): displacements and velocities of
+/// `share` of the clearance, since higher derivatives jump where films reach grooves.
+inline ConformanceOptions film_options(double c, double spin, double share = 1e-2) {
+  ConformanceOptions o;
+  o.u = share * c;
+  o.du = share * c * spin;
+  o.ddu = c * spin * spin;
+  o.tilt = 0.2;
+  o.dtilt = 1e-2;
+  o.ddtilt = 10;
+  o.dphi = 0.3;
+  o.ddphi = 300;
+  o.tangent_tolerance = 1e-8;
+  o.power_tolerance = 1e-8;
+  return o;
+}
+
 /// Kinematics of a node in a chart (which outlives it) from q = (u, phi, gamma) and its rates.
 void place(system::NodeState& n, rotation::Director& o, const Vector<6>& q, const Vector<6>& v,
            const Vector<6>& a, const Mat3& chart);

@@ -321,17 +321,10 @@ TEST(CarriedFilm, SmallMotionsOfTheMomentaryState) {
 namespace {
 
 ConformanceOptions moving(const CarriedPad& pad, double filled) {
-  ConformanceOptions o;
-  o.u = 5e-3 * c;
-  o.du = 5e-3 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
+  ConformanceOptions o = film_options(c, Omega, 5e-3);
   o.gravity = Vec3(0.0, -2.0, -9.0);
   o.tangent_tolerance = 1e-7;
+  o.power_tolerance = 1e-9;
   o.samples = 4;
   o.signals = {2, 3, 4};
   o.passive = false;  // the elastic energy of the oil is counted as heat

@@ -142,17 +142,7 @@ TEST(FilmFlow, ElementsSideBySideAreAsOneByOne) {
 }
 
 TEST(FilmFlow, Conformance) {
-  ConformanceOptions o;
-  o.u = 1e-2 * c;
-  o.du = 1e-2 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
-  o.tangent_tolerance = 1e-8;
-  o.power_tolerance = 1e-8;
+  ConformanceOptions o = film_options(c, Omega);
   o.samples = 3;
   o.q0.assign(12, 0.0);
   o.v0.assign(12, 0.0);

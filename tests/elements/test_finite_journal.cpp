@@ -117,19 +117,7 @@ Vec2 reference_force(double L, const Vec2& r, const Vec2& w, int N, int M) {
 }  // namespace
 
 TEST(FiniteJournal, Conformance) {
-  ConformanceOptions o;
-  // small displacements about eccentric positions: higher derivatives jump where a film reaches a
-  // groove
-  o.u = 1e-2 * c;
-  o.du = 1e-2 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
-  o.tangent_tolerance = 1e-8;
-  o.power_tolerance = 1e-8;
+  ConformanceOptions o = film_options(c, Omega);
   o.samples = 4;
   for (const auto& film : {bearing(0.05, split()), bearing(0.08, lobe_pads(3, 0.4, 0.3, 0.6), 0.4),
                            bearing(0.06, {})}) {

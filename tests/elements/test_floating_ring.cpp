@@ -118,18 +118,8 @@ void conform(FloatingRing<Film> ring) {
   const double c = 18e-6;
   ring.stiffness = 2e5;
   ring.damping = 30;
-  ConformanceOptions o;
-  o.u = 5e-3 * c;
-  o.du = 5e-3 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
+  ConformanceOptions o = film_options(c, Omega, 5e-3);
   o.gravity = Vec3(0.0, -2.0, -9.0);  // scalars, which do not fall, move along x
-  o.tangent_tolerance = 1e-8;
-  o.power_tolerance = 1e-8;
   o.samples = 4;
   o.signals = {4};
   if (Heat) o.signals = {4, 5, 6};

@@ -233,17 +233,8 @@ TEST(GridFilm, ShortPadsAreThoseOfTheProfile) {
 }
 
 TEST(GridFilm, FullFilmsHaveSlopesToRounding) {
-  ConformanceOptions o;
-  o.u = 1e-2 * c;
-  o.du = 1e-2 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
+  ConformanceOptions o = film_options(c, Omega);
   o.tangent_tolerance = 1e-7;
-  o.power_tolerance = 1e-8;
   o.samples = 3;
   o.q0.assign(12, 0.0);
   o.v0.assign(12, 0.0);

@@ -213,18 +213,9 @@ TEST(TiltingCells, FullFilmIsThatOfReynolds) {
 namespace {
 
 ConformanceOptions moving(const PadAtRest& rest, int pad_unknowns, double filled) {
-  ConformanceOptions o;
-  o.u = 5e-3 * c;
-  o.du = 5e-3 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
+  ConformanceOptions o = film_options(c, Omega, 5e-3);
   o.gravity.setZero();  // it does not act on scalars
   o.tangent_tolerance = 1e-7;
-  o.power_tolerance = 1e-8;
   o.samples = 4;
   o.passive = false;  // the elastic energy of the oil is counted as heat
   const int first = 2 + pad_unknowns;

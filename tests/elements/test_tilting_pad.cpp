@@ -162,18 +162,8 @@ TEST(TiltingPad, Conformance) {
   pad.mass = 0.3;
   pad.pivot_stiffness = 2e8;
   pad.pivot_damping = 3e3;
-  ConformanceOptions o;
-  o.u = 1e-2 * c;
-  o.du = 1e-2 * c * Omega;
-  o.ddu = c * Omega * Omega;
-  o.tilt = 0.2;
-  o.dtilt = 1e-2;
-  o.ddtilt = 10;
-  o.dphi = 0.3;
-  o.ddphi = 300;
+  ConformanceOptions o = film_options(c, Omega);
   o.gravity.setZero();  // it does not act on scalars
-  o.tangent_tolerance = 1e-8;
-  o.power_tolerance = 1e-8;
   o.samples = 4;
   const auto start = [&](int nodes) {
     o.q0.assign(static_cast<std::size_t>(6 * nodes), 0.0);

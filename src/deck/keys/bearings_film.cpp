@@ -277,7 +277,7 @@ void film_grid(Visitor& v, Law& b, const char* without) {
   v.integer(
       optional("axial_grid", without), b.rows, between(0, 8),
       "rows over half the length where the pressure along the axis is found on a grid too, 3 to "
-      "8, some twenty times dearer; 0: one profile, whose error stands beside the coefficients");
+      "8, a few hundred times dearer; 0: one profile, whose error stands beside the coefficients");
   if (!v.clean()) return;
   if (needed && b.rows == 0)
     v.error("E26", "axial_grid", "a surface that varies along the axis has no single profile",
