@@ -201,23 +201,54 @@ bool ModeSolver::Impl::avoid_crowd(const RootCount& c, double radius) {
   return true;
 }
 
-bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
-  // Rounding spreads the places of a cluster, not their mean.
-  constexpr double apart = 0.05, mean_apart = 1e-2;
-  double sum = 0.0, weight = 0.0;
-  for (const Complex place : places) {
+namespace {
+
+/// A decaying root that is known, and places near it where roots are missing.
+struct Cluster {
+  double root = 0;                         ///< < 0
+  double sum = 0, weight = 0, spread = 0;  ///< of the places
+  void take(Complex place) {
     const double with_conjugate = place.imag() > 0.0 ? 2.0 : 1.0;
     sum += with_conjugate * place.real();
     weight += with_conjugate;
+    spread = std::max(spread, std::abs(place - root));
   }
-  const double mean = sum / weight;
-  return !places.empty() && std::any_of(known.begin(), known.end(), [&](const Pair& p) {
-    const double size = std::abs(p.lambda);
-    return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
-           std::abs(p.lambda.real() - mean) < mean_apart * size &&
-           std::all_of(places.begin(), places.end(),
-                       [&](Complex place) { return std::abs(p.lambda - place) < apart * size; });
-  });
+  /// Rounding spreads the places of a cluster, by its number's root of it, not their mean.
+  bool is_of_copies() const {
+    constexpr double rounding = 3e-4, least_apart = 0.05, mean_apart = 3e-2;
+    const double apart = std::max(least_apart, std::pow(rounding, 1.0 / weight));
+    return spread < -apart * root && std::abs(sum - weight * root) < -mean_apart * weight * root;
+  }
+};
+
+}  // namespace
+
+bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
+  constexpr double mean_apart = 1e-2;  // of all together: the first moment is the best known
+  std::vector<Cluster> clusters;
+  constexpr double alike = 1e-3;  // copies that are known, as rounding spreads them
+  for (const Pair& p : known) {
+    const double root = p.lambda.real();
+    if (oscillates(p.lambda) || !(root < 0.0)) continue;
+    if (std::none_of(clusters.begin(), clusters.end(),
+                     [root](const Cluster& c) { return std::abs(c.root - root) < -alike * root; }))
+      clusters.push_back({root});
+  }
+  if (places.empty() || clusters.empty()) return false;
+  for (const Complex place : places) {
+    const auto nearest =
+        std::min_element(clusters.begin(), clusters.end(), [&](const Cluster& a, const Cluster& b) {
+          return std::abs(place - a.root) < std::abs(place - b.root);
+        });
+    nearest->take(place);
+  }
+  double sum = 0.0, expected = 0.0;
+  for (const Cluster& c : clusters) {
+    if (c.weight > 0.0 && !c.is_of_copies()) return false;
+    sum += c.sum;
+    expected += c.weight * c.root;
+  }
+  return std::abs(sum - expected) < -mean_apart * expected;
 }
 
 void ModeSolver::Impl::count_double_zeros() {

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -1293,4 +1295,36 @@ TEST(NaturalDecks, TorsionalModesThatGrowAreCounted) {
   };
   EXPECT_TRUE(line("1200 rpm"));
   EXPECT_FALSE(line("1450 rpm"));
+}
+
+namespace {
+
+/// An example, with other steps.
+std::string example_with(const std::string& name, const std::string& steps) {
+  std::ifstream in(std::string(WHIRL_SOURCE) + "/examples/" + name + "/deck.toml");
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  text = text.substr(0, text.find("[[step]]"));
+  return text + steps + "[output]\nreport = false\n";
+}
+
+}  // namespace
+
+// Massless nodes under damping in proportion to their stiffness have the one rate -1/beta twelve times over,
+// two bearings alike each rate of their pads twice: copies that no search tells apart make no list
+// incomplete, however many and of however many rates they are.
+TEST(NaturalDecks, CopiesOfDecayingRootsAreNotMissing) {
+  const DeckRun shaft(example_with(
+      "07_internal_damping", "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"0 rpm\"\n"));
+  ASSERT_EQ(shaft.exit, 0) << shaft.log;
+  EXPECT_TRUE(shaft.says("complete") && !shaft.says("INCOMPLETE")) << shaft.log;
+  const DeckRun pads(example_with("28_tilting_pads",
+                                  "[[step]]\nname = \"s\"\ntype = \"stability\"\nspeed = { start = "
+                                  "\"500 rpm\", stop = \"3000 rpm\", points = 4 }\n"));
+  ASSERT_EQ(pads.exit, 0) << pads.log;
+  EXPECT_TRUE(pads.says("certified at 4 speeds")) << pads.log;
+}
+
+TEST(NaturalDecks, AModelWithoutMassHasNoModesAndSaysWhy) {
+  const DeckRun d(example_with("32_bend", "[[step]]\nname = \"m\"\ntype = \"modal\"\n"));
+  EXPECT_TRUE(d.says("without mass")) << d.log;
 }

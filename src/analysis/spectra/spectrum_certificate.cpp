@@ -47,6 +47,10 @@ std::string SpectrumCertificate::text() const {
 std::string SpectrumCertificate::text_of_list() const {
   if (!open.empty()) return "completeness not certified: " + open;
   const double top = to_hz(list.radius);
+  if (!list.counted && top == 0)
+    return "completeness not certified: no frequency was found up to which roots could be counted "
+           "(a "
+           "model without mass has none)";
   if (!list.counted)
     return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
                        top);
