@@ -187,6 +187,12 @@ double between(const std::vector<double>& places, const std::vector<double>& val
   return values[k - 1] + share * (values[k] - values[k - 1]);
 }
 
+double relative_viscosity(const GridDrive& in, double place) {
+  if (in.log_viscosity.empty()) return 1.0;
+  double slope = 0.0;
+  return std::exp(log_viscosity_at(in.log_viscosity, place, slope));
+}
+
 FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
                       std::size_t samples) {
   const JournalSurface::Arc& arc = film.surface->arcs()[pad];
@@ -205,6 +211,8 @@ FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoin
     places.push_back(arc.length);
   }
   const double unit = film.pressure_unit(gap);
+  const double loss = unit * film.radius * film.length;
+  const double drag = film.viscosity * std::pow(film.radius, 3) * film.length / gap.pad;
   FilmField f;
   for (std::size_t i = 0; i < samples; ++i) {
     const double at = arc.length * static_cast<double>(i) / static_cast<double>(samples - 1);
@@ -222,9 +230,14 @@ FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoin
     f.largest.push_back(unit * between(places, g.largest, at));
     f.slope.push_back(unit * (between(places, g.mean, high) - between(places, g.mean, low)) /
                       (high - low));
-    f.viscosity.push_back(film.viscosity);
+    f.viscosity.push_back(film.viscosity * relative_viscosity(drive, at / arc.length));
     f.flow.push_back(film.length * film.radius * between(g.face_place, g.flow, at));
     f.wet.push_back(g.wet[column]);
+    f.filled.push_back(film.length * film.radius * between(g.face_place, g.filled, at));
+    f.lost.push_back(loss * between(g.face_place, g.driven, at) +
+                     drag * p.slip * p.slip * between(g.face_place, g.shear, at));
+    f.gap.push_back(gap.pad * between(g.place, g.gap, at));
+    f.conducting.push_back(between(g.place, g.conducting, at) / gap.pad);
   }
   return f;
 }

@@ -23,6 +23,10 @@ struct FilmField {
   std::vector<double> viscosity;  ///< eta, Pa s
   std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it
   std::vector<unsigned char> wet;  ///< film, not ruptured
+  /// Of a film on a grid, for its heat: flow with ruptured gaps filled, m3/s; what is turned into heat
+  /// from the start of the pad to here, W; the length that is no relief track times h, over the
+  /// length, m, and likewise of 1/h, 1/m. Empty: one profile along the axis.
+  std::vector<double> filled, lost, gap, conducting;
 };
 
 /// One pad's film.

@@ -108,16 +108,33 @@ class PadHeat {
   Index wall_place(Index i, Index m) const { return i * (M_ + J_) + m; }
   double width(Index j) const { return edge_[j + 1] - edge_[j]; }
   void turn_round() {
-    for (auto* x : {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope,
-                    &field_.viscosity, &field_.flow})
+    for (auto* x :
+         {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope, &field_.viscosity,
+          &field_.flow, &field_.filled, &field_.lost, &field_.gap, &field_.conducting})
       std::reverse(x->begin(), x->end());
     std::reverse(field_.wet.begin(), field_.wet.end());
-    for (double& x : field_.slope)
-      x = -x;
-    for (double& x : field_.flow)
-      x = -x;
+    for (auto* x : {&field_.slope, &field_.flow, &field_.filled})
+      for (double& value : *x)
+        value = -value;
   }
-  double h(Index i) const { return 0.5 * (field_.thickness[at(i)] + field_.thickness[at(i + 1)]); }
+  bool on_grid() const { return !field_.lost.empty(); }
+  /// At face i: film thickness; of recesses the mean over the length.
+  double face_gap(Index i) const { return on_grid() ? field_.gap[at(i)] : field_.thickness[at(i)]; }
+  double h(Index i) const { return 0.5 * (face_gap(i) + face_gap(i + 1)); }
+  /// For conduction across the film, 1/m.
+  double over_gap(Index i) const {
+    if (!on_grid()) return 1.0 / h(i);
+    return 0.5 * (field_.conducting[at(i)] + field_.conducting[at(i + 1)]);
+  }
+  /// h^2 P'/(2 eta f R) at a face, m/s: what the pressure drives back in the middle of the film, over
+  /// 1/4; on a grid with which the flow is right.
+  double pushed_back(Index i) const {
+    const double H = face_gap(i);
+    if (on_grid()) return 3.0 * speed_ - 6.0 * field_.filled[at(i)] / (film_.length * H);
+    const double viscosity = field_.viscosity[at(i)];
+    return H * H * field_.slope[at(i)] /
+           (2.0 * viscosity * factors(H, viscosity).along * film_.radius);
+  }
   double eta(Index i) const {
     return 0.5 * (field_.viscosity[at(i)] + field_.viscosity[at(i + 1)]);
   }
@@ -170,7 +187,7 @@ void PadHeat::add_film(Band& a) {
   add_flows(a);
   for (Index i = 0; i < N_; ++i) {
     add_loss(i);
-    const double by = conductivity(i) * film_.length * dx_ / h(i);
+    const double by = conductivity(i) * film_.length * dx_ * over_gap(i);
     for (Index j = 0; j + 1 < J_; ++j)
       conduct(a, place(i, j), place(i, j + 1), by / (0.5 * (width(j) + width(j + 1))));
     journal_[i] = by / (0.5 * width(J_ - 1));
@@ -184,9 +201,7 @@ void PadHeat::add_flows(Band& a) {
   const double capacity = s_.density * s_.specific_heat * film_.length;
   carried_.resize(N_ + 1, J_);
   for (Index i = 0; i <= N_; ++i) {
-    const double H = field_.thickness[at(i)], viscosity = field_.viscosity[at(i)];
-    const double pushed = H * H * field_.slope[at(i)] /
-                          (2.0 * viscosity * factors(H, viscosity).along * film_.radius);
+    const double H = face_gap(i), pushed = pushed_back(i);
     const auto below = [&](double z) {  // int u dzeta
       return 0.5 * speed_ * z * z - pushed * z * z * (0.5 - z / 3.0);
     };
@@ -226,16 +241,20 @@ void PadHeat::add_loss(Index i) {
   const double across = 3.0 * H * H * H * H * P * P * film_.leakage /
                         (L * L * film_.source * viscosity * viscosity * f.across);
   const double unit = viscosity / H * L * dx_;
+  VecX loss(J_);
   for (Index j = 0; j < J_; ++j) {
     const double z0 = edge_[j], z1 = edge_[j + 1];
     const auto odd = [](double z) { return z - z * z; };                          // int (1 - 2 z)
     const auto even = [](double z) { return std::pow(2.0 * z - 1.0, 3) / 6.0; };  // int (1 - 2 z)^2
-    const double q = unit * (speed_ * speed_ * f.shear * (z1 - z0) -
-                             2.0 * speed_ * pushed * (odd(z1) - odd(z0)) +
-                             (of_flow + across) * (even(z1) - even(z0)));
-    x_(place(i, j), of_loss) += q;
-    heat_ += q;
+    loss[j] = unit *
+              (speed_ * speed_ * f.shear * (z1 - z0) - 2.0 * speed_ * pushed * (odd(z1) - odd(z0)) +
+               (of_flow + across) * (even(z1) - even(z0)));
   }
+  // on a grid the loss is known, and goes across the film as that of the mean over the length does
+  if (on_grid()) loss *= std::abs(field_.lost[at(i + 1)] - field_.lost[at(i)]) / loss.sum();
+  for (Index j = 0; j < J_; ++j)
+    x_(place(i, j), of_loss) += loss[j];
+  heat_ += loss.sum();
 }
 
 void PadHeat::add_wall(Band& a) {
@@ -371,10 +390,7 @@ void find_growth(HeatBalance& b, std::span<const HeatPad> pads, const HeatSettin
   }
 }
 
-}  // namespace
-
-HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
-  WHIRL_EXPECTS(!pads.empty());
+HeatBalance balance_on_grid(std::span<const HeatPad> pads, const HeatSettings& s) {
   HeatBalance out;
   out.journal = s.supply_temperature;
   if (pads[0].point.slip == 0.0) {
@@ -424,6 +440,81 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
   }
   find_growth(out, pads, s);
   return out;
+}
+
+/// fine + share (fine - coarse) of what stands at cells, those of `coarse` twice as wide.
+void extrapolate(std::vector<double>& fine, const std::vector<double>& coarse, double share) {
+  WHIRL_EXPECTS(fine.size() == 2 * coarse.size() && coarse.size() >= 2);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const double place = 0.5 * static_cast<double>(i) - 0.25;  // among the coarse ones
+    const double last = static_cast<double>(coarse.size() - 2);
+    const double below = std::clamp(std::floor(place), 0.0, last);
+    const std::size_t k = static_cast<std::size_t>(below);
+    fine[i] += share * (fine[i] - std::lerp(coarse[k], coarse[k + 1], place - below));
+  }
+}
+
+void extrapolate(PadTemperatures& fine, const PadTemperatures& coarse, double share) {
+  for (double PadTemperatures::*x :
+       {&PadTemperatures::in, &PadTemperatures::out, &PadTemperatures::hottest,
+        &PadTemperatures::film_hottest, &PadTemperatures::film_coldest, &PadTemperatures::pad,
+        &PadTemperatures::through, &PadTemperatures::to_pad, &PadTemperatures::to_journal,
+        &PadTemperatures::heat, &PadTemperatures::carried})
+    fine.*x += share * (fine.*x - coarse.*x);
+  extrapolate(fine.face, coarse.face, share);
+  extrapolate(fine.film, coarse.film, share);
+  const auto logarithms = [](std::vector<double> x) {
+    for (double& value : x)
+      value = std::log(value);
+    return x;
+  };
+  std::vector<double> viscosity = logarithms(fine.viscosity);
+  extrapolate(viscosity, logarithms(coarse.viscosity), share);
+  for (std::size_t i = 0; i < viscosity.size(); ++i)
+    fine.viscosity[i] = std::exp(viscosity[i]);
+}
+
+/// An error of first order goes with a share of 1, one of second order with 1/3, ..
+void extrapolate(HeatBalance& fine, const HeatBalance& coarse, double share) {
+  for (std::size_t k = 0; k < fine.pads.size(); ++k) {
+    extrapolate(fine.pads[k], coarse.pads[k], share);
+    fine.growth[k] += share * (fine.growth[k] - coarse.growth[k]);
+    fine.pad_growth[k] += share * (fine.pad_growth[k] - coarse.pad_growth[k]);
+  }
+  fine.journal += share * (fine.journal - coarse.journal);
+}
+
+HeatSettings halved(HeatSettings s) {
+  for (std::size_t* n : {&s.cells, &s.layers, &s.wall_layers}) {
+    WHIRL_EXPECTS(*n % 2 == 0);
+    *n /= 2;
+  }
+  return s;
+}
+
+}  // namespace
+
+HeatSettings finer_settings(const HeatSettings& s) {
+  HeatSettings fine = s;
+  for (std::size_t* n : {&fine.cells, &fine.layers, &fine.wall_layers})
+    *n *= 2;
+  fine.grids = 3;
+  return fine;
+}
+
+HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
+  WHIRL_EXPECTS(!pads.empty() && s.grids >= 1);
+  std::vector<HeatBalance> found;
+  HeatSettings grid = s;
+  for (std::size_t k = 0; k < s.grids; ++k) {
+    if (k > 0) grid = halved(grid);
+    found.push_back(balance_on_grid(pads, grid));
+  }
+  double share = 1.0;
+  for (std::size_t order = 1; order < s.grids; ++order, share = share / (2.0 + share))
+    for (std::size_t k = 0; k + order < s.grids; ++k)
+      extrapolate(found[k], found[k + 1], share);
+  return std::move(found.front());
 }
 
 void keep_heat(const HeatBalance& b, std::size_t k, const HeatPad& pad, std::span<double> values) {

@@ -294,7 +294,7 @@ GridDrive FiniteJournal::drive(std::size_t k, const FilmPoint& p) const {
   const PadMedium m = medium(k, p);
   const PadPlace at = place(k, p);
   const Vec2 W = source_of(at, p.slip, g.pad);
-  return {at.e, Vec3(W.x(), W.y(), 0.5 * p.slip), g.pad, m.reynolds, m.edge};
+  return {at.e, Vec3(W.x(), W.y(), 0.5 * p.slip), g.pad, m.reynolds, m.edge, m.log_viscosity};
 }
 
 namespace {

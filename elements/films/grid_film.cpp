@@ -1,4 +1,5 @@
 #include <elements/films/grid_film.hpp>
+#include <elements/films/pad_film.hpp>
 #include <core/contract.hpp>
 #include <core/error.hpp>
 #include <elements/films/turbulence.hpp>
@@ -169,9 +170,11 @@ class GridPad::Solver {
         half_(pad.round_ ? 2 * m_ : m_),
         size_(n_ * m_),
         slopes_(with_slopes) {
-    for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t i = 0; i < n_; ++i) {
+      const std::array<double, 4> mu = viscosity(i);
       for (std::size_t g = 0; g < bands_; ++g)
-        add_resistance(i, g);
+        add_resistance(i, g, mu);
+    }
     number_columns();
     add_conductances();
     add_sources();
@@ -210,7 +213,8 @@ class GridPad::Solver {
   /// In place of a neighbour: the groove at an end of the pad, the free side of the bearing, nothing.
   static constexpr std::size_t groove = ~std::size_t{0}, side = groove - 1;
 
-  void add_resistance(std::size_t i, std::size_t g);
+  std::array<double, 4> viscosity(std::size_t i) const;
+  void add_resistance(std::size_t i, std::size_t g, const std::array<double, 4>& mu);
   void number_columns();
   void add_conductances();
   void add_sources();
@@ -219,6 +223,7 @@ class GridPad::Solver {
   template <class Link>
   void for_each_link(const Link& link) const;
   void add_flow(GridField& out) const;
+  void add_heat(GridField& out) const;
   double to_front(std::size_t before, std::size_t wet) const;
   void clear_matrix() { std::fill_n(a_.begin(), size_ * (2 * half_ + 1), 0.0); }
   void couple(std::size_t k, std::size_t l, double by);
@@ -280,7 +285,23 @@ class GridPad::Solver {
   std::array<double, most * most_band> a_;
 };
 
-void GridPad::Solver::add_resistance(std::size_t i, std::size_t g) {
+/// At the points of cell i, over that of reference.
+std::array<double, 4> GridPad::Solver::viscosity(std::size_t i) const {
+  std::array<double, 4> mu{1.0, 1.0, 1.0, 1.0};
+  if (in_.log_viscosity.empty()) return mu;
+  const Cell& cell = pad_.cells_[i];
+  const double first = 0.25 - 0.25 / std::sqrt(3.0), second = 0.25 + 0.25 / std::sqrt(3.0);
+  const double shares[4] = {first, second, 0.5 + first, 0.5 + second};
+  for (std::size_t q = 0; q < 4; ++q) {
+    double slope = 0.0;
+    const double place = std::lerp(cell.from, cell.to, shares[q]) / pad_.arc_;
+    mu[q] = std::exp(log_viscosity_at(in_.log_viscosity, place, slope));
+  }
+  return mu;
+}
+
+void GridPad::Solver::add_resistance(std::size_t i, std::size_t g,
+                                     const std::array<double, 4>& mu) {
   const Cell& cell = pad_.cells_[i];
   const std::array<double, 4>& depth = pad_.depth(i, g);
   const bool open = pad_.open(i, g);
@@ -297,7 +318,7 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g) {
       const double cube = h * h * h;
       double along = 1.0, across = 1.0, wall = 1.0, d_along = 0.0, d_across = 0.0, d_wall = 0.0;
       if (in_.reynolds > 0.0) {
-        const TurbulentFactors<Dual<1>> f(Dual<1>::variable(in_.reynolds * h, 0));
+        const TurbulentFactors<Dual<1>> f(Dual<1>::variable(in_.reynolds * h / mu[q], 0));
         along = f.along.v;
         across = f.across.v;
         wall = f.shear.v;
@@ -305,22 +326,22 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g) {
         d_across = f.across.g[0];
         d_wall = f.shear.g[0];
       }
-      const double r = x.weight * along / cube;
+      const double r = x.weight * mu[q] * along / cube;
       sum.r += r;
       sum.s += D * r;
       sum.square += D * D * r;
-      section.g += x.weight * cube / across;
-      if (!open) shear_ += share * x.weight * wall / h;
+      section.g += x.weight * cube / (mu[q] * across);
+      if (!open) shear_ += share * x.weight * mu[q] * wall / h;
       if (!slopes_) continue;
-      Vec3 d_arg = in_.reynolds * dh;  // of reynolds h
-      d_arg[2] = h;
-      const Vec3 dr = x.weight / cube * (d_along * d_arg - 3.0 * along / h * dh);
+      Vec3 d_arg = in_.reynolds / mu[q] * dh;  // of reynolds h/mu
+      d_arg[2] = h / mu[q];
+      const Vec3 dr = x.weight * mu[q] / cube * (d_along * d_arg - 3.0 * along / h * dh);
       sum.dr += dr;
       sum.ds += D * dr;
       sum.dsquare += D * D * dr;
-      section.dg +=
-          x.weight * (3.0 * h * h / across * dh - cube * d_across / (across * across) * d_arg);
-      if (!open) dshear_ += share * x.weight / h * (d_wall * d_arg - wall / h * dh);
+      section.dg += x.weight / mu[q] *
+                    (3.0 * h * h / across * dh - cube * d_across / (across * across) * d_arg);
+      if (!open) dshear_ += share * x.weight * mu[q] / h * (d_wall * d_arg - wall / h * dh);
     }
     half_cells_[(2 * i + half) * bands_ + g] = sum;
   }
@@ -649,6 +670,7 @@ GridField GridPad::Solver::field() const {
     if (open_[k] && !open_[l]) out.into_open -= q;
   });
   add_flow(out);
+  add_heat(out);
   return out;
 }
 
@@ -691,6 +713,68 @@ void GridPad::Solver::add_flow(GridField& out) const {
   // the side itself drags along what the film beside it has, and lets go of the rest
   add_row(m_ - 1, bands_ - 1, pad_.side_share_, true);
   out.side += pad_.side_share_ * (flow[0] - flow[n_]);
+}
+
+/// What a heat balance of the mean over the length needs, ruptured gaps filled: they count so in the drag.
+void GridPad::Solver::add_heat(GridField& out) const {
+  const double S = in_.source[2];
+  std::vector<double> driven(n_ + 1, 0.0), shear(n_ + 1, 0.0);  // of the column before a face
+  out.filled.assign(n_ + 1, 0.0);
+  for (std::size_t f = 0; f <= n_; ++f) {
+    const std::size_t own = pad_.round_ && f == n_ ? 0 : f, l = left_of(own), r = right_of(own);
+    const double angle = pad_.start_ + out.face_place[f];
+    const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
+    const auto add = [&](std::size_t band, double share, double before, double behind, bool track) {
+      if (track) return;
+      const Stretch x = face(own, band);
+      out.filled[f] += share * (S * (in_.clearance * circle + x.s / x.r) + (before - behind) / x.r);
+      const double heat = share * (S * S * (x.square - x.s * x.s / x.r) +
+                                   (before - behind) * (before - behind) / x.r);
+      // half to the column on either side; what has none on one goes to the other
+      const bool first = f == 0 && !pad_.round_, last = f == n_ && !pad_.round_;
+      if (f > 0) driven[f] += last ? heat : 0.5 * heat;
+      if (f < n_) driven[f + 1] += first ? heat : 0.5 * heat;
+    };
+    for (std::size_t j = 0; j < m_; ++j) {
+      const std::size_t k = node(l, j), m = node(r, j);
+      const bool track = (k < side && open_[k] != 0) || (m < side && open_[m] != 0);
+      for (const Piece& piece : pieces(j))
+        add(piece.band, piece.share, pressure(k), pressure(m), track);
+    }
+    // at the side itself the pressure is nowhere any: what is dragged along
+    const Stretch x = face(own, bands_ - 1);
+    out.filled[f] += pad_.side_share_ * S * (in_.clearance * circle + x.s / x.r);
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (const Across& x : pad_.across_) {
+      const double dP = pressure(at(i, x.from)) - pressure(far_node(i, x));
+      driven[i + 1] += x.conductance * sections_[i * bands_ + x.band].g * dP * dP;
+    }
+    const std::array<double, 4> mu = viscosity(i);
+    double gap = 0.0, conducting = 0.0;
+    for (std::size_t g = 0; g < bands_; ++g) {
+      if (pad_.open(i, g)) continue;
+      for (std::size_t q = 0; q < 4; ++q) {
+        const Point& x = pad_.cells_[i].points[q];
+        const double share = pad_.band_shares_[g];
+        const double h =
+            1.0 - in_.e.x() * x.cos - in_.e.y() * x.sin + pad_.depth(i, g)[q] / in_.clearance;
+        const double wall =
+            in_.reynolds > 0.0 ? TurbulentFactors<double>(in_.reynolds * h / mu[q]).shear : 1.0;
+        gap += 0.25 * share * h;
+        conducting += 0.25 * share / h;
+        shear[i + 1] += share * x.weight * mu[q] * wall / h;
+      }
+    }
+    out.gap.push_back(gap);
+    out.conducting.push_back(conducting);
+  }
+  for (std::size_t f = 0; f < n_; ++f) {
+    driven[f + 1] += driven[f];
+    shear[f + 1] += shear[f];
+  }
+  out.driven = std::move(driven);
+  out.shear = std::move(shear);
 }
 
 void GridPad::load(const GridDrive& in, GridLoad& out) const {

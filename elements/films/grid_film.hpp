@@ -6,7 +6,8 @@
 // symmetric about the middle of the length. With the pressure unit 12 eta (R/c)^2/c
 //   d/dtheta (S D - a_x h^3 P_theta) - (R/L)^2 d/dzeta (a_z h^3 P_zeta) = W.n  where P > 0,  P >= 0,
 // D the depth in m, S = slip/2: the oil that a recess holds is carried along with half the speed of
-// the surface. a_x, a_z: 1/f of turbulence.hpp.
+// the surface. a_x, a_z: 1/(mu f), f of turbulence.hpp, mu the viscosity over that of reference, alike
+// along the axis.
 //
 // Over half the length, finite volumes along the arc and quadratic elements along the axis. Along the
 // arc the flow between two neighbours is the exact one of a film whose thickness varies between them,
@@ -26,6 +27,7 @@
 #pragma once
 #include <core/types.hpp>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace whirl::elements {
@@ -45,13 +47,15 @@ struct GridDrive {
   double clearance = 1;        ///< c, m
   double reynolds = 0;         ///< of a film of thickness c; 0: laminar
   double edge = 0;             ///< pressure at the ends of the pad and in open recesses
+  /// ln mu along the pad, as PadMedium::log_viscosity; empty: mu = 1.
+  std::span<const double> log_viscosity{};
 };
 
 struct GridLoad {
   Vec3 z = Vec3::Zero();  ///< loads; of the pressure over that of the edge
   double fed = 0;         ///< flow that the pressure of the edge drives in
   double normal = 0;      ///< what the sources bring where the pressure is that of the edge
-  double shear = 0;       ///< int int f_s/h dtheta dzeta
+  double shear = 0;       ///< int int mu f_s/h dtheta dzeta
 };
 struct GridSlopes {
   Matrix<3, 3> by_source = Matrix<3, 3>::Zero();
@@ -68,6 +72,10 @@ struct GridField {
   std::vector<double> thickness;         ///< h at the middle, or beside an open recess there
   std::vector<unsigned char> wet;        ///< film somewhere along the axis
   std::vector<double> face_place, flow;  ///< of the faces between them: mean of q over the length
+  /// For the heat balance, at the faces: flow with ruptured gaps filled; from the start of the pad,
+  /// shear (of GridLoad::shear) and what the pressure's flows turn into heat. At the columns: int h
+  /// and int 1/h over the part of the length that is no open recess.
+  std::vector<double> filled, shear, driven, gap, conducting;
   double side = 0, into_open = 0;        ///< flow out at both sides, and into open recesses
   double thinnest = 0, thinnest_at = 0;  ///< h, and where
   double highest = 0, highest_at = 0;    ///< P anywhere, and where

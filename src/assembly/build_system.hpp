@@ -91,6 +91,15 @@ struct FilmBearing {
   /// The balance that the state would have, which is that in the state where it is in equilibrium.
   /// @pre heated.
   std::function<elements::HeatBalance(const NodeAt&)> heat{};
+  /// The same on a finer grid, and what it would have kept.
+  struct FinerHeat {
+    elements::HeatBalance balance;
+    std::vector<double> kept;
+  };
+  std::function<FinerHeat(const NodeAt&)> finer_heat{};
+  double viscosity = 0;  ///< of reference: what is kept are logarithms over it, Pa s
+  /// Of the oil with a viscosity in Pa s, K.
+  std::function<double(double)> temperature_of{};
 };
 
 /// The floating ring of a bearing.

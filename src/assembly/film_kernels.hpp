@@ -27,6 +27,9 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
 
 /// At a temperature, K; of a grade within its range.
 double viscosity_at(const model::Oil& o, double temperature);
+/// The temperature at which an oil has a viscosity, K: from -30 degC to 199.85 degC, beyond which it is
+/// the nearer of these.
+double temperature_of(const model::Oil& o, double viscosity);
 /// @pre flow.heat.
 elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil);
 

@@ -5,6 +5,7 @@
 #include <core/error.hpp>
 #include <core/units.hpp>
 #include <elements/films/oil.hpp>
+#include <elements/films/root_between.hpp>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,14 @@ constexpr double coldest_grade = 243.15, hottest_grade = 473.0;  // K, of the la
 double viscosity_at(const model::Oil& o, double temperature) {
   if (o.viscosity > 0) return o.viscosity * std::exp(-o.thinning * (temperature - o.temperature));
   return elements::iso_vg_viscosity(o.grade, temperature, o.density);
+}
+
+double temperature_of(const model::Oil& o, double viscosity) {
+  const double wanted = std::log(viscosity);
+  const auto thinner = [&](double T) { return wanted - std::log(viscosity_at(o, T)); };
+  if (thinner(coldest_grade) >= 0) return coldest_grade;
+  if (thinner(hottest_grade) <= 0) return hottest_grade;
+  return elements::root_between(coldest_grade, hottest_grade, 1.0, thinner);
 }
 
 elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil) {
@@ -126,6 +135,16 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
       return elements::balance_heat(pads_at(at), settings);
     };
     constexpr std::size_t each = knots + elements::FiniteJournal::kept_growths;
+    film.finer_heat = [pads_at, fine = elements::finer_settings(settings)](const NodeAt& at) {
+      const std::vector<elements::HeatPad> now = pads_at(at);
+      FilmBearing::FinerHeat out{elements::balance_heat(now, fine), {}};
+      out.kept.resize(now.size() * each);
+      for (std::size_t k = 0; k < now.size(); ++k)
+        elements::keep_heat(out.balance, k, now[k], std::span(out.kept).subspan(k * each, each));
+      return out;
+    };
+    film.viscosity = viscosity_of(oil);
+    film.temperature_of = [oil](double viscosity) { return temperature_of(oil, viscosity); };
     film.kept = pads * each;
     film.kept_each = each;
     std::vector<double> at_first(pads * each, 0.0);
@@ -135,6 +154,7 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
       if (i % each >= elements::FiniteJournal::kept_growths) at_first[i] = fresh;
     system::Keeper keeper;
     keeper.name = name_of(b);
+    keeper.time_constant = flow.heat->time_constant;
     keeper.settle = [pads_at, settings](const system::Workspace& w, std::span<double> values) {
       const std::vector<elements::HeatPad> now = pads_at(nodes_in(w));
       if (!all_inside(now)) {  // a film that is not there says nothing: as it was

@@ -93,6 +93,7 @@ struct FilmHeat {
   double housing_temperature = nan;  ///< and of that oil, K; NaN: that of the supply
   double shaft_expansion = 0, pad_expansion = 0, housing_expansion = 0;  ///< 1/K
   double assembly_temperature = 293.15;  ///< at which the clearances are those given, K
+  double time_constant = infinity;       ///< of all temperatures in time, s; infinite: they stay
 };
 
 /// How oil flows in a film beyond the isoviscous laminar one at ambient pressure.

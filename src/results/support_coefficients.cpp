@@ -135,6 +135,18 @@ double grid_error_of(const model::FiniteJournal& law, const elements::LateralMot
   return distance(tangent(one), tangent(other));
 }
 
+/// By the grid of the heat balance. node: of the state.
+double heat_error_of(const model::FiniteJournal& law, elements::LateralMotion m,
+                     const assembly::FilmBearing& heated, const assembly::NodeAt& node) {
+  elements::FiniteJournal film = assembly::make_finite_journal(law, assembly::own_grid(law));
+  film.kept_from = heated.kept_from;
+  const std::array<Mat2, 2> own = film_tangent(film, m);
+  const std::vector<double> kept = heated.finer_heat(node).kept;
+  film.kept_from = 0;
+  m.kept = kept.data();
+  return distance(own, film_tangent(film, m));
+}
+
 /// Of a damper's film, which resists velocities alone.
 double grid_error_of(const model::SqueezeFilm& law, const Vec2& place,
                      const assembly::FilmGrid& other) {
@@ -156,6 +168,41 @@ double reduced_grid_error(const elements::PadCoefficients& finer, double spin,
   const double k = fine.K.norm(), c = fine.C.norm();
   return std::max(k > 0 ? (own.K - fine.K).norm() / k : 0.0,
                   c > 0 ? (own.C - fine.C).norm() / c : 0.0);
+}
+
+/// Node states whose elements keep something else.
+class OtherKept {
+ public:
+  OtherKept(assembly::NodeAt at, const assembly::FilmBearing& film, const std::vector<double>& kept)
+      : at_(std::move(at)),
+        kept_(static_cast<std::size_t>(film.kept_from)) {
+    kept_.insert(kept_.end(), kept.begin(), kept.end());
+  }
+  const system::NodeState& operator()(Index n) {
+    const auto [place, fresh] = copies_.try_emplace(n, at_(n));
+    if (fresh) place->second.kept = kept_.data();
+    return place->second;
+  }
+
+ private:
+  assembly::NodeAt at_;
+  std::vector<double> kept_;
+  std::map<Index, system::NodeState> copies_;
+};
+
+/// The film of a bearing that keeps temperatures, or null.
+const assembly::FilmBearing* heated_film(const run::Job& job, std::size_t bearing) {
+  for (const assembly::FilmBearing& film : job.built.films)
+    if (film.bearing == bearing && film.heated) return &film;
+  return nullptr;
+}
+
+/// By how much the hottest faces differ, K.
+double face_error(const elements::HeatBalance& own, const elements::HeatBalance& finer) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < own.pads.size(); ++k)
+    worst = std::max(worst, std::abs(own.pads[k].hottest - finer.pads[k].hottest));
+  return worst;
 }
 
 /// The pads of a bearing in an evaluated state; K and C become those with the pads following.
@@ -186,6 +233,13 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
       c.axial_error = reduced_grid_error(
           ring.coefficients(node, of_grid), p.spin,
           elements::reduce_pads(ring.coefficients(node, of_one_profile), std::abs(c.spin)));
+    if (const assembly::FilmBearing* film = heated_film(job, bearing)) {
+      const auto other = std::make_shared<OtherKept>(node, *film, film->finer_heat(node).kept);
+      const assembly::NodeAt finer = [other](Index n) -> const system::NodeState& {
+        return (*other)(n);
+      };
+      c.heat_error = reduced_grid_error(ring.coefficients(finer, {}), p.spin, p.reduced.front());
+    }
     c.pads = std::move(p);
   }
 }
@@ -200,7 +254,10 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
     f.pads = film.standing(node);
     if (f.pads.empty()) continue;
     f.fields = film.fields(node);
-    if (film.heated) f.heat = film.heat(node);
+    if (film.heated) {
+      f.heat = film.heat(node);
+      f.face_error = face_error(*f.heat, film.finer_heat(node).balance);
+    }
     double sum = 0.0, count = 0.0;
     for (const elements::FilmField& x : f.fields)
       for (const double eta : x.viscosity) {
@@ -208,6 +265,7 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
         count += 1.0;
       }
     f.viscosity = sum / count;
+    if (film.heated) f.effective_temperature = film.temperature_of(f.viscosity);
     const auto flow = [&](const auto& law) {
       const double R = 0.5 * law.diameter;
       f.laminar = law.flow.regime == model::FilmFlow::Regime::laminar;
@@ -352,6 +410,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
             grid_error_of(*law, m, film.kept_from, assembly::own_grid(*law), finer_grid(*law));
         if (law->rows == 0)
           c.axial_error = grid_error_of(*law, m, film.kept_from, of_one_profile, of_grid);
+        if (film.heated) c.heat_error = heat_error_of(*law, m, film, node);
       }
   }
   if (const auto* law = std::get_if<model::SqueezeFilm>(&job.model.bearings[bearing].law))
@@ -498,14 +557,27 @@ std::string report_grid_error(io::Value& summary, std::span<const SupportCoeffic
   io::Value& v = summary["film grid"];
   v["relative error of coefficients"] = worst->grid_error;
   v["largest at"] = worst->name;
-  const SupportCoefficients* axial = nullptr;
-  for (const SupportCoefficients& c : list)
-    if (!std::isnan(c.axial_error) && !(axial && c.axial_error <= axial->axial_error)) axial = &c;
-  if (!axial || axial->axial_error <= worst->grid_error)
-    return fmt::format("coefficients right to {} (film grid)", error_text(worst->grid_error));
-  v["relative error by the axial profile"] = axial->axial_error;
-  return fmt::format("coefficients right to {} (axial profile of the film), {} (film grid)",
-                     error_text(axial->axial_error), error_text(worst->grid_error));
+  double axial = 0, heat = -1;
+  for (const SupportCoefficients& c : list) {
+    axial = std::fmax(axial, c.axial_error);
+    heat = std::fmax(heat, c.heat_error);
+  }
+  // the largest first
+  std::vector<std::pair<double, const char*>> errors{{worst->grid_error, "film grid"}};
+  if (axial > worst->grid_error) {
+    v["relative error by the axial profile"] = axial;
+    errors.emplace_back(axial, "axial profile of the film");
+  }
+  if (heat >= 0) {
+    v["relative error by the heat balance"] = heat;
+    errors.emplace_back(heat, "grid of the heat balance");
+  }
+  std::sort(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a > b; });
+  std::string text = "coefficients right to ";
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    text +=
+        fmt::format("{}{} ({})", k > 0 ? ", " : "", error_text(errors[k].first), errors[k].second);
+  return text;
 }
 
 io::Table support_table(std::span<const SupportCoefficients> list) {
@@ -534,6 +606,8 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
       {"axial error", "-",
        "of k and c, relative, by the profile of the film's pressure along the axis, "
        "against a grid there too; empty: no profile"});
+  t.columns.push_back(
+      {"heat error", "-", "of k and c, relative, by the grid of the heat balance; empty: no heat"});
   for (const SupportCoefficients& c : list)
     t.add({c.name,
            to_rpm(c.spin),
@@ -555,7 +629,8 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
            c.threshold_mass,
            c.whirl_ratio,
            c.grid_error,
-           c.axial_error});
+           c.axial_error,
+           c.heat_error});
   return t;
 }
 

@@ -33,8 +33,11 @@ struct FilmResults {
   std::vector<elements::FilmStanding> pads;
   std::vector<elements::FilmField> fields;
   std::optional<elements::HeatBalance> heat;
-  double viscosity = 0;  ///< mean, Pa s
-  double reynolds = 0;   ///< rho R |s| c/eta of the assembled clearance
+  double face_error =
+      nan;  ///< K: by how much the hottest faces differ on a finer grid of the balance
+  double effective_temperature = nan;  ///< of the oil with the mean viscosity, K; NaN: no heat
+  double viscosity = 0;                ///< mean, Pa s
+  double reynolds = 0;                 ///< rho R |s| c/eta of the assembled clearance
   double transition =
       0;  ///< Reynolds number from which on vortices and turbulence are to be expected
   bool laminar = true;  ///< as the deck has it
@@ -80,6 +83,9 @@ struct SupportCoefficients {
   /// those of a film that is solved along the axis too (grid_film.hpp; its own error is about 1e-3), at
   /// the same place and as isoviscous films, in the same norm. NaN: no such profile.
   double axial_error = nan;
+  /// Of films with heat: how far K and C at the same place are from those with the viscosities and
+  /// clearances of a finer grid of the heat balance, in the same norm. NaN: no heat.
+  double heat_error = nan;
   /// Of tilting pads; K and C are then what the shaft sees at the frequency of its own spin, with
   /// the pads following.
   std::optional<PadResults> pads{};
@@ -96,7 +102,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
 /// By differences of fourth order.
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing);
 /// The largest grid error of a list into the summary of a step; "coefficients right to 2e-4 (film
-/// grid)", or what the profile along the axis leaves, or nothing where no bearing has a grid.
+/// grid)", what the profile along the axis and the grid of the heat balance leave, or nothing where no bearing has a grid.
 std::string report_grid_error(io::Value& summary, std::span<const SupportCoefficients> list);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);
@@ -130,7 +136,9 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
 /// What a motion in time left as it began: of each film with heat the viscosity that its balance in
 /// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
 /// apart: warning W03.
-void report_kept_films(run::Job& job, const std::string& step, const system::State& end);
+/// linear: small motions, which no temperatures follow.
+void report_kept_films(run::Job& job, const std::string& step, const system::State& end,
+                       bool linear);
 /// Coefficients that the shaft sees with what a bearing has inside following: a row a frequency.
 io::Table reduced_table(std::string title);
 /// ratios: frequencies over the speed, one for each of `reduced`.

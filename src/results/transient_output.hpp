@@ -10,12 +10,16 @@
 #include <run/job.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace whirl::analysis {
 class LinearMotion;
+}
+namespace whirl::system {
+struct Frames;
 }
 
 namespace whirl::results {
@@ -54,6 +58,10 @@ class TransientOutput {
   virtual ~TransientOutput() = default;
   /// Joins the stepping loop and the checkpoint; called once, before open().
   virtual void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) = 0;
+  /// Null, or what it changes between steps (TransientOptions::between_steps).
+  virtual std::function<void(double, system::Frames&)> between_steps() { return nullptr; }
+  /// s, of a step that adapts.
+  virtual double longest_step() const { return infinity; }
   /// Begins the files that no checkpoint goes on with, after the parts are restored.
   virtual void open() {}
   /// Ends them. The motion is over, complete or not.

@@ -11,7 +11,7 @@ namespace whirl::results {
 #define WHIRL_TRANSIENT_OUTPUTS(add)                                                               \
   add(add_history) add(add_torques) add(add_energy) add(add_peaks) add(add_tilt) add(add_accuracy) \
       add(add_limits) add(add_bends) add(add_frames) add(add_events) add(add_keyphasor)            \
-          add(add_spectra) add(add_replay)
+          add(add_spectra) add(add_temperatures) add(add_replay)
 
 #define WHIRL_DECLARE(add) void add(const TransientSetup& setup, TransientOutputs& outputs);
 WHIRL_TRANSIENT_OUTPUTS(WHIRL_DECLARE)

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 6\n";
+constexpr std::string_view magic = "whirl checkpoint 7\n";
 
 /// FNV-1a of words of 64 bits, the rest byte by byte: finds a damaged file, not an ill-willed one.
 /// What a word changes in the lower bits alone, the fold after it carries on.
@@ -61,6 +61,7 @@ constexpr PartName part_names[] = {
     {Part::limits, "limits"},
     {Part::replay, "replay"},
     {Part::torques, "torques"},
+    {Part::temperatures, "temperatures"},
 };
 
 Part part_of(std::string_view name) {
@@ -90,6 +91,8 @@ std::string encode(const Checkpoint& c) {
   a.put(c.state.frames.link);
   a.put(c.state.frames.joint);
   a.put(c.state.frames.kept);
+  a.put(c.state.frames.kept_rate);
+  a.put(c.state.frames.kept_from);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
   for (const auto& [key, data] : c.parts) {
@@ -129,6 +132,11 @@ Checkpoint decode(std::string_view data) {
   c.state.frames.link = a.numbers();
   c.state.frames.joint = a.numbers();
   c.state.frames.kept = a.numbers();
+  c.state.frames.kept_rate = a.numbers();
+  c.state.frames.kept_from = a.number();
+  if (!c.state.frames.kept_rate.empty() &&
+      c.state.frames.kept_rate.size() != c.state.frames.kept.size())
+    throw std::invalid_argument("checkpoint: rates of another run");
   c.integrator = time::IntegratorState::deserialize(a.numbers());
   for (std::uint64_t n = a.count(); n > 0; --n) {
     const Part part = part_of(a.text());

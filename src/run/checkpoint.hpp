@@ -36,7 +36,8 @@ enum class Part {
   wall_clock,
   limits,
   replay,
-  torques
+  torques,
+  temperatures
 };
 
 /// A part and what decides whether the saved one fits: the columns of a series, the probes and

@@ -210,6 +210,7 @@ run::StepState start_of_other_run(const run::Job& job, const std::string& folder
   const run::Checkpoint c = run::last_state_of(folder, step);
   run::check_state_fits(c, folder, job.system(), job.model.deck_path);
   run::StepState start{c.state, c.speed, {}};
+  start.state.frames.hold_kept(start.state.t);
   if (const auto drives = c.parts.find({run::Part::drives}); drives != c.parts.end()) {
     InArchive in(drives->second);
     restore_drives(in, start);

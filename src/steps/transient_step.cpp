@@ -332,8 +332,12 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
   outputs_ = results::make_transient_outputs(
       {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value(),
        dynamic_cast<const analysis::LinearMotion*>(problem_.get())});
-  for (const auto& output : outputs_)
+  for (const auto& output : outputs_) {
     output->attach(observers_, parts_);
+    if (auto change = output->between_steps()) options_.between_steps = std::move(change);
+    if (law.integrator.dt == 0.0)
+      options_.integrator.dt_max = std::min(options_.integrator.dt_max, output->longest_step());
+  }
   add_own_parts();
   parts_.restore(resumed_ ? &*resumed_ : nullptr);
   if (resumed_) {
@@ -508,7 +512,8 @@ void TransientRun::execute() {
     if (const std::string words = output->headline(); !words.empty()) headline += ", " + words;
   }
   line.done(headline);
-  if (r.reason != analysis::StopReason::failed) results::report_kept_films(job_, step_.name, r.end);
+  if (r.reason != analysis::StopReason::failed)
+    results::report_kept_films(job_, step_.name, r.end, law_.linear);
   results::say_held(job_, step_, results::held_in_step(job_, step_), section);
   for (const auto& output : outputs_)
     output->report(end);

@@ -33,9 +33,21 @@ struct Frames {
   /// Per follower of a joint, rad: its phi less what is expected of it (joints.hpp), which tells
   /// whole turns.
   std::vector<double> joint;
-  /// What elements keep from one equilibrium to the next and a motion leaves as it is: temperatures
-  /// of films, and what follows from them (Builder::keep). Empty where nothing does.
+  /// What elements keep from one equilibrium to the next: temperatures of films, and what follows from
+  /// them (Builder::keep). Empty where nothing does.
   std::vector<double> kept;
+  /// 1/s: a motion in time changes it so from the time kept_from, s, on. Empty: it leaves it as it is.
+  std::vector<double> kept_rate;
+  double kept_from = 0;
+  double kept_at(std::size_t i, double t) const {
+    return kept_rate.empty() ? kept[i] : kept[i] + kept_rate[i] * (t - kept_from);
+  }
+  /// From the time t on it stays as it is then.
+  void hold_kept(double t) {
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      kept[i] = kept_at(i, t);
+    kept_rate.clear();
+  }
 
   bool moved() const { return chart.size() > turns.size(); }
   /// The axes that a node's phi and gamma refer to.

@@ -348,7 +348,8 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
   WHIRL_EXPECTS(f.kept.size() == kept_.size());
-  if (!kept_.empty()) std::copy(f.kept.begin(), f.kept.end(), w.kept.begin());
+  for (std::size_t i = 0; i < f.kept.size(); ++i)
+    w.kept[i] = f.kept_at(i, t);
   lanes::Motion m;
   m.count = only.empty() ? nodes() : static_cast<Index>(only.size());
   if (!only.empty()) m.nodes = only.data();

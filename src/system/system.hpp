@@ -55,6 +55,8 @@ struct Keeper {
   /// Throws an Error where values that have settled cannot be (a temperature beyond the law of an
   /// oil); null: there are no such.
   std::function<void(const Workspace& w)> check{};
+  /// In time the values go towards those that have settled, by this, s; infinite: they stay.
+  double time_constant = infinity;
 };
 
 class System {

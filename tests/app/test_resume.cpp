@@ -1,4 +1,5 @@
 // A run that is killed, interrupted and continued leaves the files of an uninterrupted one.
+#include "film_rotor.hpp"
 #include "unbalanced_rotor.hpp"
 #include <core/plugin.hpp>
 #include <gtest/gtest.h>
@@ -240,6 +241,42 @@ TEST_F(Resume, RandomKillsLeaveNoTrace) {
     ++runs;
   }
   RecordProperty("runs", runs);
+}
+
+// Temperatures of films go on where they were, with the rates they had.
+TEST_F(Resume, TemperaturesGoOnWhereTheyWere) {
+  const std::string hot = R"(type = "journal"
+diameter = "100 mm"
+length = "50 mm"
+clearance = "75 um"
+iso_vg = 32
+shape = "two_grooves"
+heat = { supply_temperature = "45 degC", time_constant = "20 ms" }
+)";
+  const std::string step = R"([[unbalance]]
+at = "mass"
+amount = "5000 g.mm"
+[[drive]]
+at = "body:start"
+type = "speed"
+speed = { type = "smooth", time = ["0 s", "0.1 s"], value = ["3000 rpm", "4000 rpm"] }
+[[step]]
+name = "up"
+type = "transient"
+duration = "0.5 s"
+checkpoint = "0.01 s"
+)";
+  std::ofstream("d.toml") << whirl::test::film_rotor(hot, 4e3, step);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("d.toml", "whole", false), 0) << read("log.txt");
+  const double whole =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  int code = run("d.toml", "cut", false, 0.6 * whole, SIGKILL), cuts = 0;
+  for (; code != 0 && cuts < 20; ++cuts)
+    code = cuts < 2 ? run("d.toml", "cut", true, 0.4 * whole, SIGINT) : run("d.toml", "cut", true);
+  ASSERT_EQ(code, 0) << read("log.txt");
+  expect_same("whole", "cut");
+  EXPECT_TRUE(fs::exists("whole/up_film_temperatures.csv"));
 }
 
 TEST_F(Resume, LaterEndAndOtherOutputs) {

@@ -249,6 +249,44 @@ TEST(GridFilm, FullFilmsHaveSlopesToRounding) {
   check_kernel(FiniteJournalBearing{{film}}, o);
 }
 
+// A viscosity that is everywhere exp(a) times another is one of reference so much larger.
+TEST(GridFilm, ViscosityAlongThePad) {
+  for (const double density : {0.0, 900.0}) {
+    FiniteJournal film = dam_bearing(60);
+    film.turbulent_density = density;
+    FiniteJournal thin = film;
+    thin.viscosity = film.viscosity * std::exp(-0.4);
+    film.kept_from = 0;
+    film.knots = 5;
+    std::vector<double> kept(2 * 7, 0.0);
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (i % 7 >= 2) kept[i] = -0.4;
+    FilmPoint p{c * Vec2(0.3, -0.4), c * Omega * Vec2(0.1, 0.2), Omega};
+    FilmForce a, b;
+    thin.evaluate(p, a);
+    p.kept = kept.data();
+    film.evaluate(p, b);
+    EXPECT_LT((a.F - b.F).norm(), 1e-10 * a.F.norm());
+    EXPECT_NEAR(a.T, b.T, 1e-10 * std::abs(a.T));
+    // thinner towards the end of the pads; slopes of a full film are those of its force
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (i % 7 >= 2) kept[i] = -0.15 * static_cast<double>(i % 7 - 2);
+    film.supply_pressure = 1e8;
+    FilmTangent t;
+    film.evaluate(p, a, t);
+    const double h = 1e-6 * c;
+    for (int k = 0; k < 2; ++k) {
+      FilmPoint q = p;
+      q.r[k] = p.r[k] + h;
+      film.evaluate(q, a);
+      q.r[k] = p.r[k] - h;
+      film.evaluate(q, b);
+      EXPECT_LT(((a.F - b.F) / (2 * h) - t.F_r.col(k)).norm(), 1e-6 * t.F_r.norm());
+      EXPECT_NEAR((a.T - b.T) / (2 * h), t.T_r[k], 1e-5 * t.T_r.norm());
+    }
+  }
+}
+
 TEST(GridFilm, RupturedFilmsHaveTheSlopesOfFinerOnes) {
   // differences over a step in which many cells dry, against slopes at its middle
   const FiniteJournal film = dam_bearing();

@@ -237,6 +237,7 @@ class Run {
       options_.checkpoint(state_now(), s);
     }
     result_.end = state_now();
+    result_.end.frames.hold_kept(result_.end.t);
     result_.statistics = integrator_->judged_statistics();
     for (Observer* o : observers_)
       o->end();
@@ -313,6 +314,7 @@ class Run {
     // step later
     if (passed_) integrator_->refresh();
     passed_ = corner;
+    if (options_.between_steps) options_.between_steps(report.t1, problem_.frames);
     if (corner) {
       // what was smooth before says nothing about what comes
       integrator_->restart(VecX(integrator_->q()), VecX(integrator_->v()), true);

@@ -49,6 +49,9 @@ struct TransientOptions {
   /// the time since then is computed again when the run is resumed.
   std::function<void(const system::State&, const time::IntegratorState&)> keep;
   std::function<void()> fall_back;
+  /// Called after every step, ending at t, and what watches it: may change the rates of what elements keep
+  /// (Frames::kept_rate), which goes on without a jump.
+  std::function<void(double t, system::Frames&)> between_steps;
   std::vector<Observer*> new_observers;  ///< of a resumed run: those that begin at its start
 };
 

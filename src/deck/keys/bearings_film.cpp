@@ -98,6 +98,10 @@ void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting, double thicknes
                "of the housing, which opens the clearance");
   v.quantity("assembly_temperature", h.assembly_temperature, "degC", any,
              "at which the clearances are those given");
+  v.quantity(
+      optional("time_constant", "they stay as they begin"), h.time_constant, "s", positive,
+      "by which, in a motion in time, viscosities and clearances go towards those that are in "
+      "balance with it");
 }
 
 /// Keys of what goes beyond isoviscous laminar oil at ambient pressure, and the oil's checks.
@@ -123,7 +127,7 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
       optional("heat", "one viscosity everywhere"),
       [&](Visitor& w) { describe_heat(w, heat, tilting, thickness); },
       "temperatures of film and pads, in balance with every equilibrium; a motion in time keeps "
-      "those it begins with");
+      "those it begins with, or follows with time_constant");
   if (heated) f.heat = heat;
   if (!v.clean()) return;
   check_oil(v, o, given);
@@ -286,12 +290,8 @@ void film_grid(Visitor& v, Law& b, const char* without) {
     v.error("E14", "axial_grid", "a grid along the axis has 3 to 8 rows over half the length");
   if (!v.clean() || b.rows == 0) return;
   if (!points) b.nodes = 240;
-  const bool heated = b.flow.heat.has_value(),
-             conserves = b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
-  if (heated || conserves)
-    v.error("E26", heated ? "heat" : "cavitation",
-            heated ? "the heat balance of a film goes with one profile along the axis"
-                   : "films that conserve mass have one profile along the axis",
+  if (b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving)
+    v.error("E26", "cavitation", "films that conserve mass have one profile along the axis",
             "a surface that is the same all along the axis, with axial_grid = 0");
 }
 
