@@ -71,7 +71,8 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
     }
   if (!(most > least_deflection(job))) return std::nullopt;
   out.error *= meshes::error_of_change / most;
-  constexpr double another = 0.5;  // no mesh's error: Newton's method has gone to another equilibrium
+  constexpr double another =
+      0.5;  // no mesh's error: Newton's method has gone to another equilibrium
   if (out.error > another) return std::nullopt;
   if (out.shaft.empty()) out.shaft = job.mesh.lines.front().name;
   return out;
