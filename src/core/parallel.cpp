@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <sched.h>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -20,10 +22,12 @@ int processors() {
 
 namespace {
 
+/// The tasks of one call and who works at them.
 class Crew {
  public:
-  Crew(std::size_t count, const std::function<void(std::size_t)>& task)
+  Crew(std::size_t count, std::size_t hands, const std::function<void(std::size_t)>& task)
       : count_(count),
+        most_helpers_(hands - 1),
         task_(task),
         failed_(count) {}
 
@@ -41,6 +45,14 @@ class Crew {
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
+  /// Helpers that would find something to do, beside those it has.
+  std::size_t wanted() const {
+    const std::size_t next = next_.load(std::memory_order_relaxed);
+    if (stop_.load(std::memory_order_relaxed) || next >= count_) return 0;
+    return std::min(count_ - next, most_helpers_ - helpers);
+  }
+
+  std::size_t helpers = 0;  ///< at work now; under the lock of the pool
 
  private:
   /// Numbers are given out in order, so every task before the failed one has begun and will be heard
@@ -54,7 +66,7 @@ class Crew {
     stop_ = true;
   }
 
-  std::size_t count_;
+  std::size_t count_, most_helpers_;
   const std::function<void(std::size_t)>& task_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
@@ -63,24 +75,113 @@ class Crew {
   std::exception_ptr failure_;
 };
 
+/// The threads of one call and of all calls within its tasks: a helper that runs out of tasks takes
+/// those of an inner call, so that there are never more hands than asked for, and none is idle while
+/// there is work. Who waits has no task left to begin and waits only for tasks that others work at:
+/// nothing can wait for itself.
+class Pool {
+ public:
+  explicit Pool(std::size_t hands) : spare_(hands - 1) {}
+  ~Pool() {
+    {
+      const std::lock_guard lock(mutex_);
+      closing_ = true;
+    }
+    changed_.notify_all();
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  void run(Crew& crew) {
+    {
+      const std::lock_guard lock(mutex_);
+      open_.push_back(&crew);
+      engage();
+    }
+    changed_.notify_all();
+    crew.work();
+    std::unique_lock lock(mutex_);
+    std::erase(open_, &crew);
+    changed_.wait(lock, [&crew] { return crew.helpers == 0; });
+  }
+
+ private:
+  /// New threads where those that stand idle are too few.
+  void engage() {
+    std::size_t wanted = 0;
+    for (const Crew* crew : open_)
+      wanted += crew->wanted();
+    for (std::size_t n = idle_; n < wanted && spare_ > 0; ++n, --spare_) {
+      try {
+        threads_.emplace_back([this] { help(); });
+      } catch (const std::system_error&) {
+        spare_ = 0;  // the machine has no more threads: those there are do it
+        return;
+      }
+    }
+  }
+
+  /// The outermost call first: its tasks are the longest.
+  Crew* crew_in_need() const {
+    const auto found = std::find_if(open_.begin(), open_.end(),
+                                    [](const Crew* crew) { return crew->wanted() > 0; });
+    return found == open_.end() ? nullptr : *found;
+  }
+
+  void help();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Crew*> open_;  ///< the outermost first
+  std::size_t spare_;        ///< threads that may still be made
+  std::size_t idle_ = 0;
+  bool closing_ = false;
+  std::vector<std::jthread> threads_;  ///< last: they end before what they use
+};
+
+/// The pool whose task the thread is at; which thread it is changes no result.
+thread_local Pool* pool_of_this_thread = nullptr;
+
+void Pool::help() {
+  pool_of_this_thread = this;
+  std::unique_lock lock(mutex_);
+  while (!closing_) {
+    Crew* crew = crew_in_need();
+    if (crew == nullptr) {
+      ++idle_;
+      changed_.wait(lock);
+      --idle_;
+      continue;
+    }
+    ++crew->helpers;
+    lock.unlock();
+    crew->work();
+    lock.lock();
+    if (--crew->helpers == 0) changed_.notify_all();
+  }
+}
+
 }  // namespace
 
 void run_side_by_side(std::size_t count, int threads,
                       const std::function<void(std::size_t)>& task) {
   WHIRL_EXPECTS(threads >= 0);
   if (threads == 0) threads = processors();
-  const std::size_t hands = std::min(count, static_cast<std::size_t>(threads));
+  const auto most = static_cast<std::size_t>(threads);
+  const std::size_t hands = std::min(count, most);
   if (hands <= 1) {
     for (std::size_t k = 0; k < count; ++k)
       task(k);
     return;
   }
-  Crew crew(count, task);
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t h = 1; h < hands; ++h)
-      others.emplace_back([&crew] { crew.work(); });
-    crew.work();
+  Crew crew(count, hands, task);
+  if (pool_of_this_thread != nullptr) {
+    pool_of_this_thread->run(crew);
+  } else {
+    Pool pool(most);
+    pool_of_this_thread = &pool;
+    pool.run(crew);
+    pool_of_this_thread = nullptr;
   }
   crew.rethrow();
 }

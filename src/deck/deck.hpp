@@ -72,8 +72,10 @@ struct MemoryEstimate {
   std::vector<Part> parts;  ///< the largest first
   Where where;              ///< the step that takes most
 };
-/// threads: that work side by side.
+/// threads: that work side by side, at one step after the other.
 MemoryEstimate estimate_memory(const model::Model& model, int threads);
+/// Bytes at the peak where as many steps as there are threads run side by side: at most.
+double memory_of_steps_side_by_side(const model::Model& model, int threads);
 /// E44 when the estimate exceeds `limit` bytes, else nothing. is_asked_for: as of check_output().
 std::vector<Diagnostic> check_memory(const model::Model& model, int threads, double limit,
                                      bool is_asked_for = false);

@@ -170,6 +170,18 @@ MemoryEstimate estimate_memory(const model::Model& m, int threads) {
   return most;
 }
 
+double memory_of_steps_side_by_side(const model::Model& m, int threads) {
+  const NodeCount nodes = count_of_nodes(m);
+  std::vector<double> needs;
+  for (const model::Step& s : m.steps)
+    needs.push_back(need_of(m, s, nodes, threads).total);
+  std::sort(needs.rbegin(), needs.rend());
+  double total = estimate_memory(m, threads).total;  // with the step that needs most
+  for (std::size_t k = 1; k < std::min(needs.size(), static_cast<std::size_t>(threads)); ++k)
+    total += needs[k];
+  return total;
+}
+
 std::vector<Diagnostic> check_memory(const model::Model& m, int threads, double limit,
                                      bool is_asked_for) {
   const MemoryEstimate e = estimate_memory(m, threads);

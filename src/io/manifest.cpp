@@ -1,12 +1,12 @@
 #include <io/file.hpp>
 #include <io/manifest.hpp>
 #include <core/error.hpp>
+#include <core/messages.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <sstream>
 #include <system_error>
 #include <vector>
@@ -59,10 +59,8 @@ void move_aside(const fs::path& file) {
   std::error_code ec;
   fs::rename(file, kept, ec);
   if (ec) io_failure(file, "cannot move aside", ec.value());
-  std::fputs(fmt::format("note: '{}' was made by no run of whirl: it is kept as '{}'\n",
-                         file.string(), kept.filename().string())
-                 .c_str(),
-             stderr);
+  say(fmt::format("note: '{}' was made by no run of whirl: it is kept as '{}'\n", file.string(),
+                  kept.filename().string()));
 }
 
 }  // namespace
@@ -115,7 +113,18 @@ void Manifest::append(const std::string& line) {
   if (n != static_cast<ssize_t>(text.size())) io_failure(list, "cannot write", n < 0 ? e : ENOSPC);
 }
 
+bool Manifest::lists(std::string_view name) const {
+  const std::lock_guard lock(mutex_);
+  return names_.count(std::string(name)) != 0;
+}
+
+void Manifest::list_nothing() {
+  const std::lock_guard lock(mutex_);
+  listing_ = false;
+}
+
 void Manifest::claim(std::string_view given, const std::string& owner) {
+  const std::lock_guard lock(mutex_);
   const std::string name(given);
   if (!owner.empty())
     if (const auto [before, fresh] = owner_.emplace(name, owner); !fresh && before->second != owner)
@@ -143,12 +152,20 @@ void Manifest::claim(std::string_view given, const std::string& owner) {
 }
 
 void Manifest::remove(const std::function<bool(const std::string&)>& which) const {
+  const std::lock_guard lock(mutex_);
   for (const std::string& name : names_) {
     const fs::path file = root_ / name;
     if (!which(name) || !inside(name) || !regular(file)) continue;
     std::error_code ec;
     fs::remove(file, ec);
   }
+}
+
+void Manifest::remove_of(const std::string& owner) const {
+  remove([&](const std::string& name) {
+    const auto of = owner_.find(name);
+    return of != owner_.end() && of->second == owner;
+  });
 }
 
 }  // namespace whirl::io

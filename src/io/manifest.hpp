@@ -4,6 +4,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -11,6 +12,7 @@
 
 namespace whirl::io {
 
+/// Threads may use one at the same time.
 class Manifest {
  public:
   static constexpr const char* file_name = "manifest.txt";
@@ -27,16 +29,19 @@ class Manifest {
   /// that could meet another.
   void claim(std::string_view name, const std::string& owner = {});
   /// From now on nothing is listed: of a folder that is thrown away.
-  void list_nothing() { listing_ = false; }
-  bool lists(std::string_view name) const { return names_.count(std::string(name)) != 0; }
+  void list_nothing();
+  bool lists(std::string_view name) const;
   /// Removes the listed regular files that `which` accepts. Their names stay listed.
   void remove(const std::function<bool(const std::string& name)>& which) const;
+  /// Removes the regular files that this owner has claimed. Their names stay listed.
+  void remove_of(const std::string& owner) const;
 
  private:
   bool inside(const std::string& name) const;
   void append(const std::string& line);
 
   std::filesystem::path root_;
+  mutable std::mutex mutex_;  ///< of what follows
   std::unordered_set<std::string> names_;
   std::unordered_map<std::string, std::string> owner_;  ///< of files written in this run
   bool older_ = false;                                  ///< results of a program that kept no list

@@ -1,10 +1,13 @@
 #include <io/nonfinite.hpp>
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 namespace whirl::io {
 
 namespace {
+std::mutex noting;
+
 std::vector<NonFinite>& noted() {
   static std::vector<NonFinite> list;
   return list;
@@ -13,6 +16,7 @@ std::vector<NonFinite>& noted() {
 
 void note_nonfinite(std::string_view file, std::string_view column, std::size_t count) {
   if (count == 0) return;
+  const std::lock_guard lock(noting);
   auto& list = noted();
   const auto it =
       std::find_if(list.begin(), list.end(), [&](const NonFinite& n) { return n.file == file; });
@@ -22,6 +26,9 @@ void note_nonfinite(std::string_view file, std::string_view column, std::size_t 
     it->count += count;
 }
 
-std::vector<NonFinite> take_nonfinite() { return std::exchange(noted(), {}); }
+std::vector<NonFinite> take_nonfinite() {
+  const std::lock_guard lock(noting);
+  return std::exchange(noted(), {});
+}
 
 }  // namespace whirl::io

@@ -15,7 +15,7 @@ struct NonFinite {
   std::size_t count = 0;
 };
 
-/// Counts `count` more in a file.
+/// Counts `count` more in a file. Any thread may call it.
 void note_nonfinite(std::string_view file, std::string_view column, std::size_t count);
 /// What was noted since the last call, in the order of the files.
 std::vector<NonFinite> take_nonfinite();

@@ -3,6 +3,7 @@
 #include <io/report/assets.hpp>
 #include <plot/plots.hpp>
 #include <plot/svg.hpp>
+#include <core/parallel.hpp>
 #include <core/text.hpp>
 #include <fmt/format.h>
 #include <algorithm>
@@ -446,7 +447,7 @@ std::string table_once_html(const Table& t, const FigureNumbers& numbers,
 }
 
 std::string section_html(const ReportSection& x, const std::string& id,
-                         const std::vector<std::string>& figure_ids, const FigureNumbers& numbers,
+                         const std::vector<std::string>& figures, const FigureNumbers& numbers,
                          PrintedTables& printed) {
   std::string s =
       "<section id=\"" + id + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
@@ -455,10 +456,10 @@ std::string section_html(const ReportSection& x, const std::string& id,
   for (const auto& t : x.tables)
     printed.try_emplace(table_html(t, numbers),
                         "<a href=\"#" + id + "\">" + escape(x.title) + "</a>");
-  if (!x.figures.empty()) {
+  if (!figures.empty()) {
     s += "<div class=\"figures\">";
-    for (std::size_t i = 0; i < x.figures.size(); ++i)
-      s += figure_html(x.figures[i], figure_ids[i], id + "f" + std::to_string(i), numbers);
+    for (const std::string& figure : figures)
+      s += figure;
     s += "</div>\n";
   }
   if (!x.files.empty()) {
@@ -469,6 +470,26 @@ std::string section_html(const ReportSection& x, const std::string& id,
     s += "</p>\n";
   }
   return s + "</section>\n";
+}
+
+using DrawnFigures = std::vector<std::vector<std::string>>;  ///< [section][figure]
+
+DrawnFigures draw_figures(const Report& r, const FigureIds& ids, const FigureNumbers& numbers,
+                          int threads) {
+  DrawnFigures drawn;
+  std::vector<std::pair<std::size_t, std::size_t>> all;
+  for (std::size_t k = 0; k < r.sections.size(); ++k) {
+    const std::size_t count = r.sections[k].figures.size();
+    drawn.emplace_back(count);
+    for (std::size_t i = 0; i < count; ++i)
+      all.emplace_back(k, i);
+  }
+  run_side_by_side(all.size(), threads, [&](std::size_t n) {
+    const auto [k, i] = all[n];
+    const std::string marks = anchor(k) + "f" + std::to_string(i);
+    drawn[k][i] = figure_html(r.sections[k].figures[i], ids[k][i], marks, numbers);
+  });
+  return drawn;
 }
 
 /// As many rules as the widest table in cards has columns; the names themselves stand in the table.
@@ -486,7 +507,7 @@ std::string card_css(const Report& r) {
 
 }  // namespace
 
-std::string render_report(const Report& r) {
+std::string render_report(const Report& r, int threads) {
   std::string s =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
@@ -503,9 +524,10 @@ std::string render_report(const Report& r) {
   s += title_block_html(r) + "</header>\n";
   if (nav) s += contents_html(r, ids);
   s += "<main>\n" + facts_html(r) + warnings_html(r);
+  const DrawnFigures drawn = draw_figures(r, ids, numbers, threads);
   PrintedTables printed;
   for (std::size_t k = 0; k < r.sections.size(); ++k)
-    s += section_html(r.sections[k], anchor(k), ids[k], numbers, printed);
+    s += section_html(r.sections[k], anchor(k), drawn[k], numbers, printed);
   if (!r.summary.is_null())
     s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
   if (!r.deck.empty())
@@ -515,8 +537,8 @@ std::string render_report(const Report& r) {
   return s + "</script>\n</body>\n</html>\n";
 }
 
-void write_report(const std::filesystem::path& file, const Report& r) {
-  write_atomic(file, render_report(r));
+void write_report(const std::filesystem::path& file, const Report& r, int threads) {
+  write_atomic(file, render_report(r, threads));
 }
 
 }  // namespace whirl::io

@@ -31,8 +31,10 @@ struct Report {
   Value summary;                        ///< shown as nested tables, folded
 };
 
-std::string render_report(const Report& report);
+/// threads: that draw figures side by side; 0 = all processors. The page does not depend on it.
+std::string render_report(const Report& report, int threads = 1);
 /// Writes it atomically.
-void write_report(const std::filesystem::path& file, const Report& report);
+/// @throws Error (Exit::io) when it cannot be written.
+void write_report(const std::filesystem::path& file, const Report& report, int threads = 1);
 
 }  // namespace whirl::io

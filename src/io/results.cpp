@@ -151,6 +151,8 @@ void ResultsFolder::remove(const std::function<bool(const std::string&)>& which)
   manifest_->remove(which);
 }
 
+void ResultsFolder::remove_of(const std::string& owner) const { manifest_->remove_of(owner); }
+
 void ResultsFolder::write_only(std::vector<std::string> names) {
   only_ = std::move(names);
   manifest_->list_nothing();

@@ -150,6 +150,8 @@ class ResultsFolder {
   /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no
   /// run made.
   void remove(const std::function<bool(const std::string& name)>& which) const;
+  /// Removes what an owner has written in this run.
+  void remove_of(const std::string& owner) const;
   void write_text(std::string_view name, std::string_view content) const;  ///< atomic
   void write_json(std::string_view name, const Value& value) const;        ///< atomic
   void write_table(std::string_view name, const Table& table) const;       ///< atomic

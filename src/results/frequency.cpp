@@ -1,3 +1,4 @@
+#include <core/messages.hpp>
 #include <core/text.hpp>
 #include <model/full_section.hpp>
 #include <run/diagnose.hpp>
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -314,8 +314,7 @@ io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
 void FrequencyStep::assume(const std::string& said) {
   summary()["assumed"].push(said);
   section.text += (section.text.empty() ? "" : "\n\n") + capital(said) + ".\n\n";
-  if (!job.options.quiet)
-    std::fputs(fmt::format("  {}: assumed: {}\n", step.name, said).c_str(), stderr);
+  if (!job.options.quiet) say(fmt::format("  {}: assumed: {}\n", step.name, said));
 }
 
 void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::string& where) {
@@ -378,7 +377,7 @@ void FrequencyStep::say_unloaded_pads(const system::State& still) {
   for (const std::string& said : unloaded) {
     if (!listed) list.push(said);
     section.text += " " + capital(said) + ".";
-    if (!job.options.quiet) std::fputs(fmt::format("  {}: {}\n", step.name, said).c_str(), stderr);
+    if (!job.options.quiet) say(fmt::format("  {}: {}\n", step.name, said));
   }
 }
 

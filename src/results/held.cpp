@@ -1,8 +1,8 @@
+#include <core/messages.hpp>
 #include <results/held.hpp>
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <type_traits>
 
 namespace whirl::results {
@@ -95,8 +95,7 @@ void say_held(run::Job& job, const model::Step& step, const std::vector<std::str
   for (const std::string& h : held) {
     list.push(h);
     all += (all.empty() ? "" : "; ") + h;
-    if (!job.options.quiet)
-      std::fputs(fmt::format("  {}: held: {}\n", step.name, h).c_str(), stderr);
+    if (!job.options.quiet) say(fmt::format("  {}: held: {}\n", step.name, h));
   }
   section.text += "\n\nHeld: " + all + ".";
 }

@@ -1,8 +1,7 @@
+#include <core/messages.hpp>
 #include <results/transient_output.hpp>
 
 #include <fmt/format.h>
-
-#include <cstdio>
 
 namespace whirl::results {
 
@@ -26,8 +25,7 @@ TransientOutputs make_transient_outputs(const TransientSetup& setup) {
 void warn_of_step(run::Job& job, const model::Step& step, const std::string& what) {
   job.summary["steps"][step.name]["warnings"].push(what);
   job.report.warnings.push_back(step.name + ": " + what);
-  if (!job.options.quiet)
-    std::fputs(fmt::format("warning: {}: {}\n", step.name, what).c_str(), stderr);
+  if (!job.options.quiet) say(fmt::format("warning: {}: {}\n", step.name, what));
 }
 
 }  // namespace whirl::results

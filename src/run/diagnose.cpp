@@ -1,4 +1,5 @@
 #include <run/diagnose.hpp>
+#include <core/messages.hpp>
 #include <run/terminal.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -30,7 +31,7 @@ void print_diagnostics(const std::vector<Diagnostic>& diagnostics) {
       for (int k = 0; k < d.where.line && std::getline(in, line); ++k) {}
       if (!in) line.clear();
     }
-    std::fputs(format(d, line, colour).c_str(), stderr);
+    say(format(d, line, colour));
   }
 }
 

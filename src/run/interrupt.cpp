@@ -2,25 +2,30 @@
 #include <run/borrowed_signals.hpp>
 #include <core/interrupt.hpp>
 
+#include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <cstddef>
 
 namespace whirl::run {
 
 namespace {
 
-volatile std::sig_atomic_t asked_by = 0;  // the first signal that asked to stop
+std::atomic<int> asked_by{0};  // the signal that asked to stop
+constexpr int by_program = -1;
+static_assert(std::atomic<int>::is_always_lock_free);  // a handler may touch it
 
 constexpr std::array<int, 4> borrowed{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 extern "C" void on_signal(int sig) {
-  interrupt::flag.store(true, std::memory_order_relaxed);
   // Ctrl-C twice ends it at once. A terminal that closes sends SIGHUP more than once, and other
   // signals with it.
-  if (asked_by == sig && sig != SIGHUP) {
+  if (asked_by.exchange(sig) == sig && sig != SIGHUP) {
     std::signal(sig, SIG_DFL);
     std::raise(sig);
   }
-  asked_by = sig;
+  // last: take_back_stop() sees who asked as soon as it can clear this
+  interrupt::flag.store(true);
 }
 
 void handle(int sig) {
@@ -46,7 +51,19 @@ void install_interrupt_handlers() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void ask_to_stop() { interrupt::flag.store(true, std::memory_order_relaxed); }
+void ask_to_stop() {
+  int nobody = 0;
+  asked_by.compare_exchange_strong(nobody, by_program);
+  interrupt::flag.store(true);
+}
+
+void stop_what_runs() { interrupt::flag.store(true); }
+
+void take_back_stop() {
+  if (asked_by != 0) return;
+  interrupt::flag.store(false);
+  if (asked_by != 0) interrupt::flag.store(true);
+}
 
 BorrowedSignals::BorrowedSignals() {
   for (std::size_t k = 0; k < borrowed.size(); ++k)
@@ -63,6 +80,6 @@ BorrowedSignals::~BorrowedSignals() {
   interrupt::flag.store(false, std::memory_order_relaxed);
 }
 
-int BorrowedSignals::asked_by() const { return run::asked_by; }
+int BorrowedSignals::asked_by() const { return std::max(0, run::asked_by.load()); }
 
 }  // namespace whirl::run

@@ -12,4 +12,9 @@ const std::atomic<bool>& interrupted();
 /// are ignored stay ignored (nohup).
 void install_interrupt_handlers();
 
+/// Asks everything that runs to stop, because the run has failed elsewhere. Whoever calls it takes it
+/// back when all have ended: what a signal asked for in between stays asked for.
+void stop_what_runs();
+void take_back_stop();
+
 }  // namespace whirl::run

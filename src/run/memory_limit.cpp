@@ -88,8 +88,18 @@ double memory_limit(const RunOptions& options) {
   return options.max_memory > 0 ? options.max_memory : available_memory();
 }
 
+namespace {
+
+int threads_of(const RunOptions& options) { return options.jobs > 0 ? options.jobs : processors(); }
+
+}  // namespace
+
+bool steps_fit_side_by_side(const model::Model& model, const RunOptions& options) {
+  return deck::memory_of_steps_side_by_side(model, threads_of(options)) <= memory_limit(options);
+}
+
 void check_memory(const model::Model& model, const RunOptions& options) {
-  const int threads = options.jobs > 0 ? options.jobs : processors();
+  const int threads = threads_of(options);
   auto problems = deck::check_memory(model, threads, memory_limit(options), options.max_memory > 0);
   if (problems.empty()) return;
   if (problems.front().where.file.empty()) problems.front().where.file = model.deck_path;

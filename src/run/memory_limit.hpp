@@ -15,4 +15,7 @@ double memory_limit(const RunOptions& options);
 /// @throws Error (Exit::deck, E44): the run would take more memory than it may.
 void check_memory(const model::Model& model, const RunOptions& options);
 
+/// Whether as many steps as there are threads may run side by side within the limit.
+bool steps_fit_side_by_side(const model::Model& model, const RunOptions& options);
+
 }  // namespace whirl::run

@@ -1,11 +1,11 @@
 #include <run/progress.hpp>
 #include <run/watch_progress.hpp>
+#include <core/messages.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <unistd.h>
 #include <utility>
 
@@ -41,6 +41,8 @@ WatchProgress::WatchProgress(ProgressWatcher watcher)
 }
 
 WatchProgress::~WatchProgress() { watching = outer_; }
+
+ProgressWatcher progress_watcher() { return watching != nullptr ? *watching : ProgressWatcher(); }
 
 PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
 
@@ -83,23 +85,20 @@ void ProgressLine::update(double fraction, const std::string& text) {
   const double done = first_ < 1.0 ? (fraction - first_) / (1.0 - first_) : 1.0;
   const std::string left = time_left(done, t - begin_);
   if (terminal_) {
-    if (t - last_time_ < rest) return;
+    if (t - last_time_ < rest || !is_heard()) return;
     last_time_ = t;
-    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s%s", name_.c_str(), 100.0 * fraction, text.c_str(),
-                 left.c_str());
+    say(fmt::format("\r\033[K{} {:3.0f} %  {}{}", name_, 100.0 * fraction, text, left));
   } else if (const int tenth = static_cast<int>(10.0 * fraction);
              tenth > last_tenth_ && tenth < 10) {
     last_tenth_ = tenth;
-    if (tenth > 0)
-      std::fprintf(stderr, "%s %d %%  %s%s\n", name_.c_str(), 10 * tenth, text.c_str(),
-                   left.c_str());
+    if (tenth > 0) say(fmt::format("{} {} %  {}{}\n", name_, 10 * tenth, text, left));
   }
 }
 
 void ProgressLine::done(const std::string& text) {
   tell(name_, 1.0, text);
   if (quiet_) return;
-  std::fprintf(stderr, "%s%s: %s\n", terminal_ ? "\r\033[K" : "", name_.c_str(), text.c_str());
+  say(fmt::format("{}{}: {}\n", terminal_ ? "\r\033[K" : "", name_, text));
 }
 
 }  // namespace whirl::run

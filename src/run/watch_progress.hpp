@@ -23,4 +23,7 @@ class WatchProgress {
   const ProgressWatcher* outer_;
 };
 
+/// Whom the calling thread tells, to go on telling from another one; empty: nobody.
+ProgressWatcher progress_watcher();
+
 }  // namespace whirl::run

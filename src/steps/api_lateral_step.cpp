@@ -1,6 +1,7 @@
 // An api_lateral step: for every set of bearings the critical-speed map, the undamped modes, the
 // response to unbalance at their antinodes and the stability, each a step of its own on a model of
 // its own; and one table of what complies.
+#include <core/messages.hpp>
 #include <analysis/response/api684.hpp>
 #include <la/multiply.hpp>
 #include <meshes/mass_properties.hpp>
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace whirl::steps {
 
@@ -600,7 +600,7 @@ void run_api_lateral_step(run::Job& job, const model::Step& step,
   run::ProgressLine(step.name, job.options.quiet)
       .done(fmt::format("{}: {} of {} checks failed, {}", law.standard, checks.failed(),
                         checks.checks().size(), time.text()));
-  if (!job.options.quiet && !job.options.json) std::fputs(checks.text().c_str(), stdout);
+  if (!job.options.quiet && !job.options.json) print(checks.text());
 }
 
 }  // namespace whirl::steps

@@ -1,5 +1,6 @@
 // An api_torsional step: the train, where multiples of the speeds and of the line frequency meet its
 // torsional modes, how far they keep away, and the stresses that stated torques cause.
+#include <core/messages.hpp>
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <assembly/element_section.hpp>
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace whirl::steps {
 
@@ -647,7 +647,7 @@ void TorsionalReport::execute() {
   run::Job& job = s_.job;
   s_.finish(fmt::format("{}: {} of {} checks failed", law_.standard, checks_.failed(),
                         checks_.checks().size()));
-  if (!job.options.quiet && !job.options.json) std::fputs(checks_.text().c_str(), stdout);
+  if (!job.options.quiet && !job.options.json) print(checks_.text());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A static step: the spinning, loaded equilibrium, or the path of equilibria under a growing load,
 // with deflections, reactions, section forces and stresses.
+#include <core/messages.hpp>
 #include <analysis/statics/load_path.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
@@ -15,8 +16,6 @@
 #include <core/error.hpp>
 
 #include <fmt/format.h>
-
-#include <cstdio>
 
 namespace whirl::steps {
 
@@ -381,9 +380,9 @@ void StaticRun::execute() {
   add_section();
   if (!job_.options.quiet && !job_.options.json) {
     for (std::size_t k = 1; k < notes_.size(); ++k)
-      std::fputs(("  " + notes_[k] + "\n").c_str(), stdout);
+      print("  " + notes_[k] + "\n");
     for (const std::string& line : results_.lines)
-      std::fputs(("  " + line + "\n").c_str(), stdout);
+      print("  " + line + "\n");
   }
   state_.drives.clear();  // an equilibrium: none of them has begun
   job_.states[step_.name] = std::move(state_);

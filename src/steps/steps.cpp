@@ -1,12 +1,15 @@
-// Runs the steps of a deck in order and writes summary and report, complete or not: a failed step
-// keeps what came before it.
+// Runs the steps of a deck and writes summary and report, complete or not: a failed step keeps what
+// comes before it in the deck.
+#include <core/messages.hpp>
 #include <run/interrupt.hpp>
 #include <run/job.hpp>
 #include <steps/savings.hpp>
 #include <steps/steps.hpp>
+#include <steps/steps_side_by_side.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/interrupt.hpp>
+#include <core/parallel.hpp>
 #include <io/nonfinite.hpp>
 #include <plot/rotor_drawing.hpp>
 #include <plot/svg.hpp>
@@ -15,7 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <functional>
 #include <map>
 #include <type_traits>
 
@@ -51,13 +54,17 @@ void describe_model(run::Job& job) {
 /// Numbers that are none and that nothing accounts for: the results are not to be trusted there,
 /// and that is said.
 void report_nonfinite(run::Job& job) {
-  for (const io::NonFinite& n : io::take_nonfinite()) {
+  std::vector<io::NonFinite> all = io::take_nonfinite();
+  std::stable_sort(all.begin(), all.end(), [&](const io::NonFinite& a, const io::NonFinite& b) {
+    return place_in_deck(job.model, a.file) < place_in_deck(job.model, b.file);
+  });
+  for (const io::NonFinite& n : all) {
     const std::string text = fmt::format(
         "{} in {} are not finite (first in the column '{}'): what should stand there was not found",
         n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count), n.file, n.column);
     job.summary["warnings"].push(text);
     job.report.warnings.push_back(text);
-    if (!job.options.quiet) std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
+    if (!job.options.quiet) say(fmt::format("warning: {}\n", text));
   }
 }
 
@@ -72,13 +79,10 @@ void describe_savings(run::Job& job) {
   v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet)
-    std::fputs(
-        fmt::format("left out: {} parts of the general model this deck does not need "
-                    "(summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
-                    job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned,
-                    1e6 * s.everything)
-            .c_str(),
-        stderr);
+    say(fmt::format(
+        "left out: {} parts of the general model this deck does not need "
+        "(summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
+        job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything));
 }
 
 void take_times(run::Job& job, const Stopwatch& watch) {
@@ -87,6 +91,23 @@ void take_times(run::Job& job, const Stopwatch& watch) {
     job.summary["run time by phase, wall [s]"][name] = time.wall;
   }
   run::put_run_time(job.summary, watch.elapsed());
+}
+
+/// Every figure of the report as a file of its own.
+void write_plots(const run::Job& job) {
+  std::vector<std::pair<std::string, const plot::Figure*>> plots;
+  std::map<std::string, int> figures;  // of one name: the second is NAME-2
+  for (const io::ReportSection& s : job.report.sections)
+    for (const plot::Figure& f : s.figures) {
+      const int n = ++figures[f.name];
+      const std::string number = n > 1 ? fmt::format("-{}", n) : std::string();
+      plots.emplace_back(fmt::format("plots/{}{}.svg", f.name, number), &f);
+    }
+  std::vector<std::string> drawn(plots.size());
+  run_side_by_side(plots.size(), job.options.jobs,
+                   [&](std::size_t k) { drawn[k] = plot::render_svg(*plots[k].second); });
+  for (std::size_t k = 0; k < plots.size(); ++k)  // in order, as their names are listed
+    job.folder.write_text(plots[k].first, drawn[k]);
 }
 
 void write_report(run::Job& job, const RunTime& time) {
@@ -98,15 +119,8 @@ void write_report(run::Job& job, const RunTime& time) {
   rotor.tables = {results::station_table(job), results::mass_table(job.model)};
   rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
   job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
-  io::write_report(job.folder.path("report.html"), job.report);
-  std::map<std::string, int> figures;  // of one name: the second is NAME-2
-  for (const io::ReportSection& s : job.report.sections)
-    for (const plot::Figure& f : s.figures) {
-      const int n = ++figures[f.name];
-      job.folder.write_text(
-          fmt::format("plots/{}{}.svg", f.name, n > 1 ? fmt::format("-{}", n) : std::string()),
-          plot::render_svg(f));
-    }
+  io::write_report(job.folder.path("report.html"), job.report, job.options.jobs);
+  write_plots(job);
 }
 
 /// Summary and report of what has run.
@@ -252,6 +266,27 @@ Error in_step(const run::Job& job, const std::string& name, const Error& e) {
   return Error(e.exit(), std::move(all));
 }
 
+/// @throws Interrupted, with the step marked as such; Error with the name of the step.
+void run_named_step(run::Job& job, const model::Step& step) {
+  job.folder.set_owner(step.name);
+  try {
+    run_step(job, step);
+  } catch (const Interrupted&) {
+    job.summary["steps"][step.name]["outcome"] = "interrupted";
+    if (!job.options.quiet) say(fmt::format("{}: interrupted\n", step.name));
+    throw;
+  } catch (const Error& unnamed) {
+    throw in_step(job, step.name, unnamed);
+  }
+}
+
+void run_one_by_one(run::Job& job, const StepBody& body) {
+  for (const model::Step& step : job.model.steps) {
+    if (run::interrupted()) return;
+    body(job, step);
+  }
+}
+
 /// The title block of the deck, what is given of it.
 void put_title_block(run::Job& job) {
   if (!job.model.title_block) return;
@@ -280,25 +315,23 @@ void run_steps(run::Job& job) {
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings)
     job.report.warnings.push_back(w.message);
-  std::string running;
+  const StepBody body = [](run::Job& of_step, const model::Step& step) {
+    run_named_step(of_step, step);
+  };
+  StepsSideBySide several(job, body);  // what of them the report still looks at lives as long
   try {
-    for (const model::Step& step : job.model.steps) {
-      running = step.name;
-      if (run::interrupted()) break;
-      job.folder.set_owner(step.name);
-      run_step(job, step);
-    }
+    if (several.possible())
+      several.run();
+    else
+      run_one_by_one(job, body);
   } catch (const Interrupted&) {
-    // steps before it are complete; of this one nothing is
-    job.summary["steps"][running]["outcome"] = "interrupted";
-    if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
-  } catch (const Error& unnamed) {
-    const Error e = in_step(job, running, unnamed);
+    // steps before it are complete; of this one nothing is, and it has said so
+  } catch (const Error& e) {
     io::Value& v = job.summary["error"];
     for (const Diagnostic& d : e.diagnostics())
       v.push(d.code + ": " + d.message);
     finish(job, watch);
-    throw e;
+    throw;
   }
   describe_savings(job);
   finish(job, watch);
