@@ -1,10 +1,12 @@
 #include <deck/text/assemble.hpp>
 #include <deck/deck.hpp>
 #include <deck/materials.hpp>
+#include <deck/parsed_deck.hpp>
 #include <deck/reader.hpp>
 #include <deck/validate.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
 #include <set>
 
 namespace whirl::deck {
@@ -98,35 +100,42 @@ void add_varied_parameters(Value& resolved, Value table) {
   resolved.members.insert(first_table, Member{"parameters", {}, std::move(table), false});
 }
 
-void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
-  Diagnostics diagnostics;
-  const TextProblem bad = check_text(deck.sources[0].text, TextKind::deck);
-  if (!bad.ok()) {
-    diagnostics.error("E03", Spot{0, bad.line, bad.column, 1}, bad.message, bad.hint);
-  } else {
-    Document document = assemble(deck.sources, diagnostics, {options.files_allowed});
-    if (document.complete) {
-      apply_overrides(document, options.set, deck.sources, diagnostics);
-      if (document.root.spot.line == 0) document.root.spot = Spot{0, 1, 1, 1};
-      deck.model.deck_path = file.string();
-      deck.model.deck_name = stem_of(file);
-      deck.model.output.directory = "results/" + deck.model.deck_name;
-      const Member* parameters = document.root.find("parameters");
-      Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr,
-                       {{"deck", deck.model.deck_name}}, varied_names(document.root));
-      Reader reader(deck.sources, diagnostics, names, document, deck.model);
-      reader.files_allowed = options.files_allowed;
-      reader.read();
-      if (diagnostics.errors() == 0) names.warn_unused(diagnostics);
-      Value resolved = reader.take_resolved();
-      add_builtin_materials(resolved, deck.model);
-      add_varied_parameters(resolved, names.varied_table());
-      if (diagnostics.errors() == 0) {
-        deck.model.resolved = write_toml(resolved);
-        deck.model.moving = moving_deck(resolved);
-      }
-    }
-  }
+/// Of source 0; incomplete where it cannot be parsed.
+Document parse(Sources& sources, bool files_allowed, Diagnostics& diagnostics) {
+  const TextProblem bad = check_text(sources[0].text, TextKind::deck);
+  if (bad.ok()) return assemble(sources, diagnostics, {files_allowed});
+  diagnostics.error("E03", Spot{0, bad.line, bad.column, 1}, bad.message, bad.hint);
+  Document none;
+  none.complete = false;
+  return none;
+}
+
+/// The model of a document, whose texts are the sources of the deck; the overrides become one more.
+void read_document(Deck& deck, const std::filesystem::path& file, const ReadOptions& options,
+                   Document& document, Diagnostics& diagnostics) {
+  apply_overrides(document, options.set, deck.sources, diagnostics);
+  if (document.root.spot.line == 0) document.root.spot = Spot{0, 1, 1, 1};
+  deck.model.deck_path = file.string();
+  deck.model.deck_name = stem_of(file);
+  deck.model.output.directory = "results/" + deck.model.deck_name;
+  const Member* parameters = document.root.find("parameters");
+  Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr,
+                   {{"deck", deck.model.deck_name}}, varied_names(document.root));
+  Reader reader(deck.sources, diagnostics, names, document, deck.model);
+  reader.files_allowed = options.files_allowed;
+  reader.read();
+  if (diagnostics.errors() == 0) names.warn_unused(diagnostics);
+  Value resolved = reader.take_resolved();
+  add_builtin_materials(resolved, deck.model);
+  add_varied_parameters(resolved, names.varied_table());
+  if (diagnostics.errors() > 0) return;
+  deck.model.resolved = write_toml(resolved);
+  deck.model.moving = moving_deck(resolved);
+}
+
+void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options,
+               Document document, Diagnostics diagnostics) {
+  if (document.complete) read_document(deck, file, options, document, diagnostics);
   deck.errors = diagnostics.errors();
   deck.diagnostics = diagnostics.take(deck.sources);
   if (deck.errors > 0) return;
@@ -159,23 +168,64 @@ std::string Deck::report(bool colour) const {
   return out;
 }
 
-Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
-  Deck deck;
+namespace {
+
+/// Adds the text of a deck as the first source; what stands against it.
+std::optional<Diagnostic> read_text_of(const std::filesystem::path& file, Sources& sources) {
   const bool standard_input = file == "-";
   FileText text =
       standard_input ? read_standard_input(max_deck_bytes) : read_file(file, max_deck_bytes);
-  deck.sources.add(standard_input ? "standard input" : file.string(), file.parent_path(),
-                   std::move(text.text));
-  if (!text.ok()) {
-    Diagnostic d;
-    d.code = text.code;
-    d.message = text.message;
-    d.hint = text.hint;
-    deck.diagnostics.push_back(std::move(d));
-    deck.errors = 1;
-    return deck;
-  }
-  read_into(deck, file, options);
+  sources.add(standard_input ? "standard input" : file.string(), file.parent_path(),
+              std::move(text.text));
+  if (text.ok()) return std::nullopt;
+  Diagnostic d;
+  d.code = text.code;
+  d.message = text.message;
+  d.hint = text.hint;
+  return d;
+}
+
+Deck unreadable_deck(Sources sources, Diagnostic why) {
+  Deck deck;
+  deck.sources = std::move(sources);
+  deck.diagnostics.push_back(std::move(why));
+  deck.errors = 1;
+  return deck;
+}
+
+model::Model model_of(Deck deck) {
+  if (!deck.ok()) throw Error(exit_of(deck.diagnostics), std::move(deck.diagnostics));
+  return std::move(deck.model);
+}
+
+}  // namespace
+
+ParsedDeck::ParsedDeck(const std::filesystem::path& file, bool files_allowed)
+    : file_(file),
+      files_allowed_(files_allowed),
+      unreadable_(read_text_of(file, sources_)) {
+  if (!unreadable_) document_ = parse(sources_, files_allowed, diagnostics_);
+}
+
+Deck ParsedDeck::read(const std::vector<std::string>& set) const {
+  if (unreadable_) return unreadable_deck(sources_, *unreadable_);
+  Deck deck;
+  deck.sources = sources_;
+  read_into(deck, file_, {set, files_allowed_}, document_, diagnostics_);
+  return deck;
+}
+
+model::Model ParsedDeck::load(const std::vector<std::string>& set) const {
+  return model_of(read(set));
+}
+
+Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
+  Deck deck;
+  if (auto problem = read_text_of(file, deck.sources))
+    return unreadable_deck(std::move(deck.sources), std::move(*problem));
+  Diagnostics diagnostics;
+  Document document = parse(deck.sources, options.files_allowed, diagnostics);
+  read_into(deck, file, options, std::move(document), std::move(diagnostics));
   return deck;
 }
 
@@ -183,14 +233,14 @@ Deck read_deck_text(std::string text, const std::string& name, const ReadOptions
                     const std::filesystem::path& folder) {
   Deck deck;
   deck.sources.add(name, folder, std::move(text));
-  read_into(deck, name, options);
+  Diagnostics diagnostics;
+  Document document = parse(deck.sources, options.files_allowed, diagnostics);
+  read_into(deck, name, options, std::move(document), std::move(diagnostics));
   return deck;
 }
 
 model::Model load_model(const std::filesystem::path& file, const ReadOptions& options) {
-  Deck deck = read_deck(file, options);
-  if (!deck.ok()) throw Error(exit_of(deck.diagnostics), std::move(deck.diagnostics));
-  return std::move(deck.model);
+  return model_of(read_deck(file, options));
 }
 
 Exit exit_of(const std::vector<Diagnostic>& diagnostics) {

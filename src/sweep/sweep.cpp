@@ -5,6 +5,7 @@
 #include <sweep/ranks.hpp>
 #include <sweep/workers.hpp>
 #include <core/error.hpp>
+#include <deck/parsed_deck.hpp>
 #include <core/interrupt.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
@@ -49,7 +50,8 @@ class Runner {
       : options_(options),
         plan_(plan),
         rank_(rank),
-        memory_(memory_of_a_process(options, plan)) {}
+        memory_(memory_of_a_process(options, plan)),
+        deck_(options.deck, options.read.files_allowed) {}
 
   /// In the process of a worker. Never throws.
   std::string operator()(std::int64_t run, int worker) const {
@@ -96,11 +98,11 @@ class Runner {
  public:
   /// whole: with the report and the pictures of the deck. @throws as steps::run_deck
   int steps_of(std::int64_t run, const fs::path& results, bool whole) const {
-    deck::ReadOptions read = options_.read;
-    if (!whole) read.set.insert(read.set.end(), std::begin(tables_alone), std::end(tables_alone));
+    std::vector<std::string> set = options_.read.set;
+    if (!whole) set.insert(set.end(), std::begin(tables_alone), std::end(tables_alone));
     const std::vector<std::string> values = plan_.design.values(run);
     for (std::size_t k = 0; k < values.size(); ++k)
-      read.set.push_back(plan_.design.factors()[k].path + "=" + values[k]);
+      set.push_back(plan_.design.factors()[k].path + "=" + values[k]);
     run::RunOptions o;
     o.quiet = true;
     o.jobs = 1;
@@ -110,23 +112,24 @@ class Runner {
       for (const Response& r : plan_.responses)
         o.only_files.push_back(r.table + ".csv");
     o.variant = [&](const std::string& setting) {
-      deck::ReadOptions one = read;
-      one.set.push_back(setting);
-      return deck::load_model(options_.deck, one);
+      std::vector<std::string> one = set;
+      one.push_back(setting);
+      return deck_.load(one);
     };
     o.build = [&](const std::vector<std::string>& settings) {
-      deck::ReadOptions one = read;
-      one.set.insert(one.set.end(), settings.begin(), settings.end());
-      return deck::load_model(options_.deck, one);
+      std::vector<std::string> one = set;
+      one.insert(one.end(), settings.begin(), settings.end());
+      return deck_.load(one);
     };
-    return steps::run_deck(deck::load_model(options_.deck, read), o);
+    return steps::run_deck(deck_.load(set), o);
   }
 
  private:
   const SweepOptions& options_;
   const Plan& plan_;
   int rank_;
-  double memory_;  ///< bytes that a run may take
+  double memory_;          ///< bytes that a run may take
+  deck::ParsedDeck deck_;  ///< read once, before there are workers
 };
 
 Row row_without_answer(std::int64_t run, Ended ended, int signal, double limit, std::size_t n) {
