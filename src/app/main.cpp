@@ -181,7 +181,8 @@ void add_sweep(CLI::App& app, Given& g) {
       ->take_all()
       ->allow_extra_args(false);
   c->add_option("--response", g.sweep.responses,
-                "a number of a table of the run, PICK a row from 1, last, min, max, absmax or mean")
+                "a number or word of a table of the run, PICK a row from 1, last, min, max, absmax "
+                "or mean; of the summary: summary:KEY.KEY")
       ->type_name("[NAME=]TABLE:COLUMN[:PICK]")
       ->take_all()
       ->allow_extra_args(false);

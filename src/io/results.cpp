@@ -114,6 +114,10 @@ TimeSeriesPtr make_hdf5_series(fs::path file, SeriesOptions options) {
   return std::make_unique<Watched>(file.filename().string(), std::move(sink));
 }
 
+void add_words_hdf5(const fs::path& file, const std::vector<WordColumn>& columns) {
+  Plugin::load("hdf5").function<Hdf5AddWords>(hdf5_add_words)(file, columns);
+}
+
 Columns read_hdf5(const fs::path& file) {
   Columns c;
   Plugin::load("hdf5").function<Hdf5Read>(hdf5_read)(file, c);

@@ -32,8 +32,9 @@ double most_in_tail(double n, double p) {
   return k - 1;
 }
 
-/// Why order statistics say nothing of these runs; empty: they do.
-std::string obstacle(const Plan& plan) {
+}  // namespace
+
+std::string obstacle_to_bounds(const Plan& plan) {
   const Design& design = plan.design;
   if (design.weighted()) return "none: the samples are weighted";
   const bool laid =
@@ -44,7 +45,15 @@ std::string obstacle(const Plan& plan) {
   return all_random ? "" : "none: values of a list are no samples";
 }
 
-}  // namespace
+Interval bounds_of_share(double count, double runs) {
+  WHIRL_EXPECTS(count >= 0 && count <= runs && runs > 0);
+  constexpr double z = 1.959963984540054;  // of the normal distribution, 2.5 % beyond it
+  const double share = count / runs, weight = z * z / runs;
+  const double middle = share + 0.5 * weight;
+  const double half = z * std::sqrt(share * (1 - share) / runs + 0.25 * weight / runs);
+  return {std::max(0.0, (middle - half) / (1 + weight)),
+          std::min(1.0, (middle + half) / (1 + weight))};
+}
 
 std::optional<OrderBounds> bounds_of_quantile(std::size_t samples, double p) {
   WHIRL_EXPECTS(p > 0 && p < 1);
@@ -63,7 +72,7 @@ std::size_t samples_for_bounds(double p) {
 
 QuantileBounds bounds_of_response(const Plan& plan, std::vector<double> values) {
   QuantileBounds out;
-  out.missing = obstacle(plan);
+  out.missing = obstacle_to_bounds(plan);
   if (!out.missing.empty()) return out;
   std::sort(values.begin(), values.end());
   const auto bounds = [&values](double p) -> std::optional<Interval> {

@@ -32,6 +32,12 @@ struct QuantileBounds {
   std::optional<Interval> p05, median, p95;
   std::string missing;  ///< why there are none, or not all; empty: there are all
 };
+/// Why runs of this plan say nothing of how sure a percentile or a share is; empty: they do.
+std::string obstacle_to_bounds(const Plan& plan);
+/// Between which the probability of something lies with confidence_of_bounds that happened in `count`
+/// of `runs` independent runs. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
+/// @pre 0 <= count <= runs, runs > 0
+Interval bounds_of_share(double count, double runs);
 /// values: of runs that gave one.
 QuantileBounds bounds_of_response(const Plan& plan, std::vector<double> values);
 

@@ -3,10 +3,12 @@
 #include <sweep/confidence.hpp>
 #include <sweep/pictures.hpp>
 #include <sweep/sensitivity.hpp>
+#include <sweep/words.hpp>
 #include <core/contract.hpp>
 #include <core/types.hpp>
 #include <io/report.hpp>
 #include <io/results.hpp>
+#include <io/words.hpp>
 
 #include <fmt/format.h>
 
@@ -36,14 +38,6 @@ std::vector<double> ranks_of(const std::vector<double>& x) {
     i = j;
   }
   return rank;
-}
-
-/// A word as given: where a spreadsheet would take it for a formula, behind an apostrophe.
-std::string cell_of_word(const std::string& word) {
-  constexpr std::string_view begins_formulas = "=+-@\t\r";
-  const bool formula =
-      !word.empty() && begins_formulas.find(word.front()) != std::string_view::npos;
-  return formula ? "'" + word : word;
 }
 
 io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
@@ -78,8 +72,12 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
       else
         cells.emplace_back(leading_number(values[k]));
     if (weighted) cells.emplace_back(c.weight[t.rows.size()]);
-    for (const Answer& a : row.answers) {
-      cells.emplace_back(a.failure.empty() ? a.value : nan);
+    for (std::size_t k = 0; k < row.answers.size(); ++k) {
+      const Answer& a = row.answers[k];
+      if (c.words[k].empty())
+        cells.emplace_back(a.failure.empty() ? a.value : nan);
+      else
+        cells.emplace_back(cell_of_word(c.words[k][t.rows.size()]));
       cells.emplace_back(a.failure);
     }
     cells.emplace_back(row.exit);
@@ -117,6 +115,7 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
                {"95 % to", "-", ""},
                {"missing bounds", "-", "why there are none, or not all"}};
   for (std::size_t k = 0; k < plan.responses.size(); ++k) {
+    if (!c.words[k].empty()) continue;
     const auto values = finite(c.responses[k]);
     const double failed = static_cast<double>(c.responses[k].size() - values.size());
     std::vector<io::Table::Cell> cells{plan.responses[k].name, c.units[k],
@@ -146,6 +145,35 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
   return t;
 }
 
+/// The same with the words: a row each, in columns of their own.
+io::Table with_words(io::Table statistics, const io::Table& words, const Plan& plan,
+                     const Columns& c) {
+  if (words.rows.empty()) return statistics;
+  const std::size_t numbers = statistics.columns.size();
+  statistics.nan_means += "; of a word: it has no mean, a number no share";
+  statistics.columns.push_back({"word", "-", "empty: numbers"});
+  statistics.columns.push_back({"share", "-", "of the runs that gave a word"});
+  statistics.columns.push_back({"share from", "-", "bounds, 95 % confidence, after Wilson"});
+  statistics.columns.push_back({"share to", "-", ""});
+  for (auto& row : statistics.rows) {
+    row.emplace_back("");
+    row.insert(row.end(), 3, nan);
+  }
+  for (const auto& word : words.rows) {
+    const auto response =
+        std::find_if(plan.responses.begin(), plan.responses.end(),
+                     [&word](const Response& r) { return r.name == word[0].text; });
+    const std::vector<std::string>& all =
+        c.words[static_cast<std::size_t>(response - plan.responses.begin())];
+    const auto failed = std::count(all.begin(), all.end(), std::string());
+    std::vector<io::Table::Cell> cells{word[0], "-", word[2], static_cast<double>(failed)};
+    cells.resize(numbers - 1, nan);
+    cells.insert(cells.end(), {word[6], word[1], word[3], word[4], word[5]});
+    statistics.add(std::move(cells));
+  }
+  return statistics;
+}
+
 /// Some columns of it.
 io::Table part_of(const io::Table& table, std::string title,
                   const std::vector<std::size_t>& columns) {
@@ -161,6 +189,13 @@ io::Table part_of(const io::Table& table, std::string title,
     part.add(std::move(cells));
   }
   return part;
+}
+
+/// On a page the bounds stand in a table of their own.
+void add_statistics(const io::Table& statistics, std::vector<io::Table>& tables) {
+  tables.push_back(part_of(statistics, statistics.title, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  tables.push_back(part_of(statistics, "Percentiles and their bounds, 95 % confidence",
+                           {0, 1, 8, 12, 13, 9, 14, 15, 10, 16, 17, 18}));
 }
 
 /// How probable it is to lie beyond the limits asked for.
@@ -252,11 +287,13 @@ io::Table effects_table(const Plan& plan, const Columns& c) {
                {"rank correlation", "-",
                 "after Spearman: 1 or -1 where one grows or falls with the "
                 "other throughout"}};
-  for (std::size_t r = 0; r < plan.responses.size(); ++r)
+  for (std::size_t r = 0; r < plan.responses.size(); ++r) {
+    if (!c.words[r].empty()) continue;
     for (std::size_t f = 0; f < c.factors.size(); ++f) {
       const auto [x, y] = pairs_of(c.factors[f], c.responses[r]);
       t.add({plan.responses[r].name, plan.design.factors()[f].path, rank_correlation(x, y)});
     }
+  }
   return t;
 }
 
@@ -267,7 +304,9 @@ io::ReportSection worst_section(const Plan& plan, const Rows& rows) {
   for (const std::int64_t run : worst_runs(plan, rows)) {
     std::string text = fmt::format("run {}", run);
     for (std::size_t r = 0; r < plan.responses.size(); ++r)
-      if (const Answer& a = rows.at(run).answers[r]; a.failure.empty())
+      if (const Answer& a = rows.at(run).answers[r]; !a.word.empty())
+        text += fmt::format(", {} {}", plan.responses[r].name, a.word);
+      else if (a.failure.empty())
         text +=
             fmt::format(", {} {:.6g}{}{}", plan.responses[r].name, a.value,
                         a.unit.empty() || a.unit == "-" ? "" : " ", a.unit == "-" ? "" : a.unit);
@@ -293,7 +332,14 @@ io::Report report_of(const Plan& plan, const Rows& rows, const Columns& c,
   return report;
 }
 
+void print_words(const io::Table& words) {
+  for (const auto& row : words.rows)
+    std::printf("%-32s %7.0f runs %5.1f %%  %s\n", row[0].text.c_str(), row[2].number,
+                100 * row[3].number, row[1].text.c_str());
+}
+
 void print_statistics(const io::Table& t) {
+  if (t.rows.empty()) return;
   std::printf("%-32s %8s %7s %7s %12s %12s %12s %12s\n", "response", "unit", "runs", "failed",
               "5 %", "median", "95 %", "largest");
   for (const auto& row : t.rows)
@@ -411,13 +457,16 @@ double rank_correlation(const std::vector<double>& x, const std::vector<double>&
 
 namespace {
 
-/// The columns of numbers.
-void write_hdf5(const std::filesystem::path& file, const io::Table& table) {
+bool has_text(const io::Table& table, std::size_t column) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [column](const auto& row) { return row[column].is_text; });
+}
+
+void write_numbers(const std::filesystem::path& file, const io::Table& table) {
   std::vector<std::size_t> numbers;
   std::vector<io::Channel> channels;
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    const auto is_text = [k](const auto& row) { return row[k].is_text; };
-    if (std::any_of(table.rows.begin(), table.rows.end(), is_text)) continue;
+    if (has_text(table, k)) continue;
     numbers.push_back(k);
     const io::Table::Column& c = table.columns[k];
     channels.push_back({c.name, c.unit, c.description, {}, 1.0, "runs"});
@@ -433,22 +482,38 @@ void write_hdf5(const std::filesystem::path& file, const io::Table& table) {
   out->close();
 }
 
+/// Numbers as rows and columns, what is text as lists of words.
+void write_hdf5(const std::filesystem::path& file, const io::Table& table) {
+  write_numbers(file, table);
+  std::vector<io::WordColumn> words;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    if (!has_text(table, k)) continue;
+    io::WordColumn column{table.columns[k].name, table.columns[k].description, {}};
+    for (const auto& row : table.rows)
+      column.cells.push_back(row[k].text);
+    words.push_back(std::move(column));
+  }
+  io::add_words_hdf5(file, words);
+}
+
 }  // namespace
 
 void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& options) {
   const Columns c = columns_of(plan, rows);
   io::ResultsFolder folder(plan.root);
   const io::Table statistics = statistics_table(plan, c), effects = effects_table(plan, c);
+  const io::Table words = words_table(plan, c);
   const io::Table runs = sweep_table(plan, rows, c);
   folder.write_table("sweep.csv", runs);
   if (options.hdf5) write_hdf5(folder.path("sweep.h5"), runs);
-  folder.write_table("statistics.csv", statistics);
+  folder.write_table("statistics.csv", with_words(statistics, words, plan, c));
   folder.write_table("effects.csv", effects);
-  // on a page the bounds stand in a table of their own
-  std::vector<io::Table> tables{
-      part_of(statistics, statistics.title, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}),
-      part_of(statistics, "Percentiles and their bounds, 95 % confidence",
-              {0, 1, 8, 12, 13, 9, 14, 15, 10, 16, 17, 18})};
+  std::vector<io::Table> tables;
+  if (!words.rows.empty()) {
+    tables = {words, keys_by_word(plan, c)};
+    folder.write_table("words.csv", tables.back());
+  }
+  if (!statistics.rows.empty()) add_statistics(statistics, tables);
   if (!plan.limits.empty()) {
     tables.push_back(probabilities_table(plan, c));
     folder.write_table("probabilities.csv", tables.back());
@@ -457,7 +522,7 @@ void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& optio
     tables.push_back(std::move(sensitivity));
     folder.write_table("sensitivity.csv", tables.back());
   }
-  tables.push_back(effects);
+  if (!effects.rows.empty()) tables.push_back(effects);
   io::Value summary = io::Value::object();
   summary["runs"] = plan.design.runs();
   summary["failed"] =
@@ -472,12 +537,20 @@ void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& optio
         v[name] = row[k].number;
     }
   }
+  for (const auto& row : words.rows) {
+    io::Value& v = summary["responses"][row[0].text][row[1].text];
+    v["runs"] = row[2].number;
+    v["share"] = row[3].number;
+    v["share from"] = row[4].number;
+    v["share to"] = row[5].number;
+  }
   folder.write_json("summary.json", summary);
   io::write_report(folder.path("sweep.html"), report_of(plan, rows, c, tables, summary));
   if (options.run.json)
     std::fputs(io::to_json(summary).c_str(), stdout);
   else if (!options.run.quiet)
     print_statistics(statistics);
+  if (!options.run.json && !options.run.quiet) print_words(words);
 }
 
 }  // namespace whirl::sweep

@@ -5,9 +5,9 @@
 
 namespace whirl::sweep {
 
-/// Writes sweep.csv, statistics.csv, effects.csv, where asked for probabilities.csv and
-/// sensitivity.csv and sweep.h5 (the columns of numbers of sweep.csv), summary.json and sweep.html;
-/// prints the statistics.
+/// Writes sweep.csv, statistics.csv, effects.csv, where responses are words words.csv, where asked for
+/// probabilities.csv and sensitivity.csv and sweep.h5 (the columns of sweep.csv, words as strings),
+/// summary.json and sweep.html; prints the statistics.
 /// rows: one for every run.
 /// @throws Error (Exit::io) when a file cannot be written, or HDF5 is wanted and was not built.
 void write_outcome(const Plan& plan, const std::map<std::int64_t, Row>& rows,

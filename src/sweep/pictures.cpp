@@ -4,6 +4,7 @@
 #include <sweep/scatter_matrix.hpp>
 #include <sweep/sensitivity.hpp>
 #include <sweep/surface.hpp>
+#include <sweep/words.hpp>
 
 #include <fmt/format.h>
 
@@ -340,6 +341,7 @@ std::vector<plot::Figure> pictures_of(const Plan& plan, const Columns& c) {
   };
   const bool one_at_a_time = plan.design.sampling() == Sampling::one_at_a_time;
   for (std::size_t r = 0; r < plan.responses.size(); ++r) {
+    if (!c.words[r].empty()) add(word_figure(plan, c, r));
     const auto values = finite(c.responses[r]);
     if (values.empty()) continue;
     add(scheme_figure(plan, c, r));

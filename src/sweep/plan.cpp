@@ -267,7 +267,7 @@ std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64
   for (const Worst& w : plan.worst) {
     std::vector<std::pair<double, std::int64_t>> order;
     for (const auto& [run, row] : rows)
-      if (const Answer& a = row.answers[w.response]; a.failure.empty())
+      if (const Answer& a = row.answers[w.response]; a.failure.empty() && a.word.empty())
         order.emplace_back(w.least ? a.value : -a.value, run);
     std::sort(order.begin(), order.end());
     for (std::size_t k = 0; k < std::min(w.count, order.size()); ++k)

@@ -1,7 +1,8 @@
 #include <sweep/response.hpp>
 #include <core/error.hpp>
 #include <core/types.hpp>
-#include <io/results.hpp>
+#include <io/table_file.hpp>
+#include <sweep/summary_entries.hpp>
 
 #include <fmt/format.h>
 
@@ -59,10 +60,55 @@ double picked(Response::Pick pick, const std::vector<double>& values) {
   return nan;
 }
 
-std::size_t column_of(const io::Columns& table, const std::string& title) {
-  for (std::size_t k = 0; k < table.names.size(); ++k)
-    if (title == table.names[k] || title == table.names[k] + " [" + table.units[k] + "]") return k;
-  return table.names.size();
+bool is_titled(const std::string& asked, const std::string& name, const std::string& unit) {
+  return asked == name || asked == name + " [" + unit + "]";
+}
+
+const io::TableFile::Column* column_of(const io::TableFile& table, const std::string& title) {
+  const auto found =
+      std::find_if(table.columns.begin(), table.columns.end(),
+                   [&](const auto& column) { return is_titled(title, column.name, column.unit); });
+  return found == table.columns.end() ? nullptr : &*found;
+}
+
+/// What a cell of a column with text says that is no number.
+std::string word_in(const io::TableFile::Column& column, std::size_t row) {
+  if (column.texts.empty() || std::isfinite(column.numbers[row])) return {};
+  const std::string& text = column.texts[row];
+  return text == "nan" || text == "inf" || text == "-inf" ? std::string() : text;
+}
+
+void answer_by_row(const Response& r, const io::TableFile::Column& column, Answer& a) {
+  const std::size_t rows = column.numbers.size();
+  const std::size_t row = r.pick == Response::Pick::last ? rows : r.row;
+  if (row == 0 || row > rows) {
+    a.failure = fmt::format("no row {}: the table has {}", r.row, rows);
+    return;
+  }
+  a.word = word_in(column, row - 1);
+  if (!a.word.empty()) return;
+  if (std::isfinite(column.numbers[row - 1]))
+    a.value = column.numbers[row - 1];
+  else
+    a.failure = fmt::format("no finite value in row {}", row);
+}
+
+Answer answer_of_summary(const Response& r, const std::filesystem::path& file) {
+  Answer a{nan, "", ""};
+  const std::vector<SummaryEntry> entries = read_summary(file);
+  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const SummaryEntry& e) {
+    return is_titled(r.column, e.path, e.unit);
+  });
+  if (entry == entries.end()) {
+    a.failure = fmt::format("no entry '{}' in the summary", r.column);
+    return a;
+  }
+  a.unit = entry->unit;
+  a.word = entry->word;
+  if (!a.word.empty()) return a;
+  a.value = entry->number;
+  if (!std::isfinite(a.value)) a.failure = "the value is not finite";
+  return a;
 }
 
 }  // namespace
@@ -102,52 +148,73 @@ Response read_response(const std::string& text) {
   return r;
 }
 
+std::string file_of(const Response& r) {
+  return r.table + (r.table == summary_table ? ".json" : ".csv");
+}
+
 Answer answer(const Response& r, const std::filesystem::path& results) {
   Answer a{nan, "", ""};
-  const auto file = results / (r.table + ".csv");
+  const auto file = results / file_of(r);
   std::error_code ec;
   if (!std::filesystem::exists(file, ec)) {
     a.failure = fmt::format("no table '{}'", r.table);
     return a;
   }
-  const io::Columns table = io::read_csv(file);
-  const std::size_t k = column_of(table, r.column);
-  if (k == table.names.size()) {
+  if (r.table == summary_table) return answer_of_summary(r, file);
+  const io::TableFile table = io::read_table(file);
+  const io::TableFile::Column* column = column_of(table, r.column);
+  if (column == nullptr) {
     a.failure = fmt::format("no column '{}'", r.column);
     return a;
   }
-  a.unit = table.units[k];
-  const std::vector<double>& column = table.values[k];
+  a.unit = column->unit;
   if (r.pick == Response::Pick::row || r.pick == Response::Pick::last) {
-    const std::size_t row = r.pick == Response::Pick::last ? column.size() : r.row;
-    if (row == 0 || row > column.size())
-      a.failure = fmt::format("no row {}: the table has {}", r.row, column.size());
-    else if (!std::isfinite(column[row - 1]))
-      a.failure = fmt::format("no finite value in row {}", row);
-    else
-      a.value = column[row - 1];
+    answer_by_row(r, *column, a);
     return a;
   }
   std::vector<double> values;
-  a.failure = finite_values(column, values);
+  a.failure = finite_values(column->numbers, values);
   if (a.failure.empty()) a.value = picked(r.pick, values);
   return a;
 }
 
+namespace {
+
+std::string listed(const std::string& table, const std::string& name, const std::string& unit,
+                   bool is_word) {
+  const std::string of_unit = unit.empty() ? "" : " [" + unit + "]";
+  return fmt::format("{}:{}{}{}", table, name, of_unit, is_word ? " (words)" : "");
+}
+
+void list_columns(const std::filesystem::path& file, std::vector<std::string>& out) {
+  const io::TableFile table = io::read_table(file);
+  for (const io::TableFile::Column& column : table.columns) {
+    const bool numbers = std::any_of(column.numbers.begin(), column.numbers.end(),
+                                     [](double x) { return std::isfinite(x); });
+    const bool texts = std::any_of(column.texts.begin(), column.texts.end(),
+                                   [](const std::string& text) { return !text.empty(); });
+    if (numbers || texts)
+      out.push_back(listed(file.stem().string(), column.name, column.unit, !numbers));
+  }
+}
+
+/// Without times, which no model decides.
+void list_summary(const std::filesystem::path& file, std::vector<std::string>& out) {
+  for (const SummaryEntry& e : read_summary(file))
+    if (e.path.find("run time") == std::string::npos)
+      out.push_back(listed(summary_table, e.path, e.unit, !e.word.empty()));
+}
+
+}  // namespace
+
 std::vector<std::string> list_responses(const std::filesystem::path& results) {
   std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(results)) {
-    if (entry.path().extension() != ".csv") continue;
-    const io::Columns table = io::read_csv(entry.path());
-    for (std::size_t k = 0; k < table.names.size(); ++k) {
-      const auto finite = std::count_if(table.values[k].begin(), table.values[k].end(),
-                                        [](double x) { return std::isfinite(x); });
-      if (finite == 0) continue;  // text
-      out.push_back(fmt::format("{}:{}{}", entry.path().stem().string(), table.names[k],
-                                table.units[k].empty() ? "" : " [" + table.units[k] + "]"));
-    }
-  }
+  for (const auto& entry : std::filesystem::directory_iterator(results))
+    if (entry.path().extension() == ".csv") list_columns(entry.path(), out);
   std::sort(out.begin(), out.end());
+  const std::filesystem::path summary = results / "summary.json";
+  std::error_code ec;
+  if (std::filesystem::exists(summary, ec)) list_summary(summary, out);
   return out;
 }
 

@@ -45,13 +45,29 @@ bool read(std::string_view s, Number& x) {
 
 constexpr std::size_t fixed_cells = 5, cells_per_answer = 3;
 
+/// Stands before a word, where else a number stands.
+constexpr char before_words = '"';
+
+std::string cell_of_value(const Answer& a) {
+  return a.word.empty() ? fmt::format("{}", a.value) : before_words + cell(a.word);
+}
+
+/// False: neither a word nor a number.
+bool read_value(std::string_view text, Answer& a) {
+  if (text.starts_with(before_words))
+    a.word = text.substr(1);
+  else if (text != "nan")
+    return read(text, a.value);
+  return true;
+}
+
 }  // namespace
 
 std::string line_of(const Row& row) {
   std::string line = fmt::format("{}\t{}\t{}\t{}\t{:.3f}", row.run, row.exit, cell(row.code),
                                  cell(row.message), row.cpu);
   for (const Answer& a : row.answers)
-    line += fmt::format("\t{}\t{}\t{}", a.value, cell(a.unit), cell(a.failure));
+    line += fmt::format("\t{}\t{}\t{}", cell_of_value(a), cell(a.unit), cell(a.failure));
   return line + fmt::format("\t{:016x}\n", checksum(line));
 }
 
@@ -70,7 +86,7 @@ std::optional<Row> row_of(std::string_view line) {
   row.message = cells[3];
   for (std::size_t k = fixed_cells; k < cells.size(); k += cells_per_answer) {
     Answer a{nan, std::string(cells[k + 1]), std::string(cells[k + 2])};
-    if (cells[k] != "nan" && !read(cells[k], a.value)) return std::nullopt;
+    if (!read_value(cells[k], a)) return std::nullopt;
     row.answers.push_back(std::move(a));
   }
   return row;

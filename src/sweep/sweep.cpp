@@ -110,7 +110,7 @@ class Runner {
     o.output = results;
     if (!whole)
       for (const Response& r : plan_.responses)
-        o.only_files.push_back(r.table + ".csv");
+        o.only_files.push_back(file_of(r));
     o.variant = [&](const std::string& setting) {
       std::vector<std::string> one = set;
       one.push_back(setting);

@@ -6,6 +6,7 @@
 #include <io/results.hpp>
 
 #include <fcntl.h>
+#include <cmath>
 #include <sys/file.h>
 
 namespace fs = std::filesystem;
@@ -368,9 +369,65 @@ TEST_F(Sweep, PercentilesHaveTheirConfidence) {
             std::string::npos);
 }
 
+constexpr const char* step_in_time = R"([[step]]
+name = "m"
+type = "modal"
+speed = "3000 rpm"
+[[step]]
+name = "t"
+type = "transient"
+start = "rest"
+initial_speed = "3000 rpm"
+duration = "0.02 s"
+amplitude_limit = "1 mm"
+)";
+constexpr const char* asked_for_words =
+    " --samples 30 --vary 'step.t.amplitude_limit=uniform(0.05 mm, 1 mm)' "
+    "--response end=summary:steps.t.outcome --response time=summary:steps.t.t_end "
+    "--response kind=m_modes:kind:1 --response none=summary:steps.t.nothing";
+
+TEST_F(Sweep, WordsAreResponses) {
+  std::ofstream(folder_ / "d.toml", std::ios::app) << step_in_time;
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o s") + asked_for_words), 4) << log_;
+  const std::string runs = read("s/sweep.csv");
+  EXPECT_NE(runs.find(",end time reached,,0.02,,lateral,,nan,no entry"), std::string::npos) << runs;
+  EXPECT_NE(runs.find(",amplitude limit exceeded,,"), std::string::npos) << runs;
+  const io::Columns shares = io::read_csv(folder_ / "s/statistics.csv");
+  double sum = 0;
+  for (std::size_t row = 0; row < shares.rows(); ++row) {
+    const double share = shares["share"][row];
+    if (!(share < 1)) continue;  // of numbers there is none
+    EXPECT_LT(shares["share from"][row], share);
+    EXPECT_GT(shares["share to"][row], share);
+    EXPECT_EQ(shares["runs"][row], std::round(30 * share));
+    sum += share;
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+  // it is the low limits that are exceeded
+  const io::Columns keys = io::read_csv(folder_ / "s/words.csv");
+  EXPECT_LT(keys["mean"][1], keys["mean of all"][1]);
+  EXPECT_GT(keys["mean"][0], keys["mean of all"][0]);
+  EXPECT_NE(read("s/sweep.html").find("id=\"words_1\""), std::string::npos);
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o one -j 1") + asked_for_words), 4) << log_;
+  EXPECT_EQ(read("one/sweep.csv"), runs);
+}
+
+TEST_F(Sweep, WordsInHdf5) {
+  if (!Plugin::available("hdf5") && std::system("'" WHIRL_EXE "' version | grep -q hdf5") != 0)
+    GTEST_SKIP() << "needs the component hdf5";
+  std::ofstream(folder_ / "d.toml", std::ios::app) << step_in_time;
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o s --hdf5") + asked_for_words), 4) << log_;
+  const io::Columns binary = io::read_hdf5(folder_ / "s/sweep.h5");
+  EXPECT_EQ(binary["time"], io::read_csv(folder_ / "s/sweep.csv")["time"]);
+  const std::string bytes = read("s/sweep.h5");
+  for (const char* word : {"amplitude limit exceeded", "no entry 'steps.t.nothing' in the summary"})
+    EXPECT_NE(bytes.find(word), std::string::npos) << word;
+}
+
 TEST_F(Sweep, ListsWhatCanBeAResponse) {
   ASSERT_EQ(whirl("sweep d.toml --list -o s"), 0);
   EXPECT_NE(log_.find("c_undamped:speed [rpm]"), std::string::npos) << log_;
+  EXPECT_NE(log_.find("summary:steps.c.type (words)"), std::string::npos) << log_;
 }
 
 }  // namespace

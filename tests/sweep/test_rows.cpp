@@ -1,4 +1,5 @@
 // Rows on the disk, statistics, and processes that crash or hang.
+#include <sweep/confidence.hpp>
 #include <sweep/outcome.hpp>
 #include <sweep/response.hpp>
 #include <sweep/rows.hpp>
@@ -78,9 +79,46 @@ TEST(SweepResponses, PickNumbersOutOfTables) {
   EXPECT_EQ(value("t:speed:mean").value, -0.5);
   for (const char* text : {"t:speed:2", "t:speed:4", "t:sped", "u:speed", "t:name:max"})
     EXPECT_FALSE(value(text).failure.empty()) << text;
+  EXPECT_EQ(value("t:name").word, "a");
+  EXPECT_EQ(value("t:name:last").word, "c");
+  EXPECT_TRUE(std::isnan(value("t:name").value));
+  std::ofstream(folder / "summary.json")
+      << R"({"steps": {"a": {"outcome": "end", "t_end [s]": 0.5, "ok": true, "x": "nan"}}, "l": [3, "w"]})";
+  EXPECT_EQ(value("summary:steps.a.outcome").word, "end");
+  EXPECT_EQ(value("summary:steps.a.t_end").value, 0.5);
+  EXPECT_EQ(value("summary:steps.a.t_end [s]").unit, "s");
+  EXPECT_EQ(value("summary:steps.a.ok").word, "true");
+  EXPECT_EQ(value("summary:l.1").value, 3);
+  EXPECT_EQ(value("summary:l.2").word, "w");
+  for (const char* text : {"summary:steps", "summary:steps.a.x", "summary:steps.b.outcome"})
+    EXPECT_FALSE(value(text).failure.empty()) << text;
   for (const char* text : {"t", ":speed", "t:", "t:speed:0", "t:speed:first", "../t:speed", "=t:x"})
     EXPECT_THROW(read_response(text), Error) << text;
   fs::remove_all(folder);
+}
+
+TEST(SweepRows, WordsComeBack) {
+  Row row;
+  row.run = 3;
+  for (const char* word : {"end time reached", "\"quoted\"", "nan", "3.5", "a,b"})
+    row.answers.push_back({nan, "", "", word});
+  row.answers.push_back({2.5, "m", ""});
+  const std::string line = line_of(row);
+  const auto again = row_of(std::string_view(line).substr(0, line.size() - 1));
+  ASSERT_TRUE(again);
+  for (std::size_t k = 0; k < row.answers.size(); ++k)
+    EXPECT_EQ(again->answers[k].word, row.answers[k].word);
+  EXPECT_EQ(again->answers.back().value, 2.5);
+}
+
+// L. D. Brown, T. T. Cai, A. DasGupta, Stat. Sci. 16 (2001) 101: the interval of Wilson.
+TEST(SweepStatistics, BoundsOfShares) {
+  const Interval half = bounds_of_share(5, 10), none = bounds_of_share(0, 10);
+  EXPECT_NEAR(half.low, 0.236593, 1e-6);
+  EXPECT_NEAR(half.high, 0.763407, 1e-6);
+  EXPECT_EQ(none.low, 0);
+  EXPECT_NEAR(none.high, 0.277533, 1e-6);
+  EXPECT_EQ(bounds_of_share(7, 7).high, 1);
 }
 
 TEST(SweepStatistics, OfKnownSamples) {

@@ -19,7 +19,7 @@ void describe(Visitor& v, model::SweepPlan& s) {
           "keys and their values, as --vary has them: \"bearing.NDE.clearance=60um:90um:7\"; "
           "\"@runs.csv\", a table of runs, stands beside the deck");
   v.texts(optional("response", "none"), s.response,
-          "numbers of the tables of a run, as --response has them: "
+          "numbers and words of the tables and the summary of a run, as --response has them: "
           "\"first=critical_damped:speed:1\"");
   v.integer("samples", s.samples, between(1, 1000000000), "samples of the distributions");
   v.option("sampling", sampling, samplings, "how they are laid");

@@ -455,6 +455,35 @@ void read(const fs::path& path, Columns& out) {
     }
 }
 
+void write_words(const fs::path& file, hid_t group, const WordColumn& column) {
+  std::string name = column.name;
+  for (std::size_t at = name.find('/'); at != std::string::npos; at = name.find('/', at))
+    name.replace(at, 1, "\u2044");
+  const hsize_t rows = column.cells.size();
+  const Handle type = string_type();
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose, file, "cannot write");
+  const Handle data(
+      H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+      file, "cannot write");
+  std::vector<const char*> cells;
+  for (const std::string& cell : column.cells)
+    cells.push_back(cell.c_str());
+  if (rows > 0 && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()) < 0)
+    io_failure(file, "cannot write");
+  write_strings(file, data, "description", {column.description});
+}
+
+void add_words(const fs::path& path, const std::vector<WordColumn>& columns) {
+  const std::lock_guard lock(library());
+  prepare_library();
+  Opened o = open_series(path, true);
+  Handle group(H5Gcreate2(o.file, "words", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path,
+               "cannot write");
+  for (const WordColumn& column : columns)
+    write_words(path, group, column);
+  if (H5Fflush(o.file, H5F_SCOPE_GLOBAL) < 0) io_failure(path, "cannot write");
+}
+
 }  // namespace
 }  // namespace whirl::io
 
@@ -468,4 +497,9 @@ WHIRL_PLUGIN_EXPORT whirl::io::TimeSeries* whirl_hdf5_make_series(
 WHIRL_PLUGIN_EXPORT void whirl_hdf5_read(const std::filesystem::path& file,
                                          whirl::io::Columns& out) {
   whirl::io::read(file, out);
+}
+
+WHIRL_PLUGIN_EXPORT void whirl_hdf5_add_words(const std::filesystem::path& file,
+                                              const std::vector<whirl::io::WordColumn>& columns) {
+  whirl::io::add_words(file, columns);
 }
