@@ -9,6 +9,7 @@
 #include <sched.h>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace whirl {
@@ -22,6 +23,10 @@ int processors() {
 
 namespace {
 
+class Crew;
+/// The call whose task the thread is at; which thread it is changes no result.
+thread_local const Crew* crew_of_this_thread = nullptr;
+
 /// The tasks of one call and who works at them.
 class Crew {
  public:
@@ -29,18 +34,19 @@ class Crew {
       : count_(count),
         most_helpers_(hands - 1),
         task_(task),
+        outer_(crew_of_this_thread),
         failed_(count) {}
 
   void work() {
-    while (!stop_.load(std::memory_order_relaxed)) {
-      const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
-      if (k >= count_) return;
-      try {
-        task_(k);
-      } catch (...) {
-        remember(k);
-      }
-    }
+    const Crew* before = std::exchange(crew_of_this_thread, this);
+    take_tasks();
+    crew_of_this_thread = before;
+  }
+  /// A call from within a task of another one, however deep.
+  bool is_within(const Crew& other) const {
+    for (const Crew* crew = outer_; crew != nullptr; crew = crew->outer_)
+      if (crew == &other) return true;
+    return false;
   }
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
@@ -55,6 +61,17 @@ class Crew {
   std::size_t helpers = 0;  ///< at work now; under the lock of the pool
 
  private:
+  void take_tasks() {
+    while (!stop_.load(std::memory_order_relaxed)) {
+      const std::size_t k = next_.fetch_add(1, std::memory_order_relaxed);
+      if (k >= count_) return;
+      try {
+        task_(k);
+      } catch (...) {
+        remember(k);
+      }
+    }
+  }
   /// Numbers are given out in order, so every task before the failed one has begun and will be heard
   /// of too.
   void remember(std::size_t k) {
@@ -68,6 +85,7 @@ class Crew {
 
   std::size_t count_, most_helpers_;
   const std::function<void(std::size_t)>& task_;
+  const Crew* outer_;  ///< which outlives this one
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
@@ -77,8 +95,8 @@ class Crew {
 
 /// The threads of one call and of all calls within its tasks: a helper that runs out of tasks takes
 /// those of an inner call, so that there are never more hands than asked for, and none is idle while
-/// there is work. Who waits has no task left to begin and waits only for tasks that others work at:
-/// nothing can wait for itself.
+/// there is work. Who has no task left to begin waits for those that others work at, and helps within
+/// these alone: nothing waits for itself, or for what is not its own.
 class Pool {
  public:
   explicit Pool(std::size_t hands) : spare_(hands - 1) {}
@@ -102,7 +120,12 @@ class Pool {
     crew.work();
     std::unique_lock lock(mutex_);
     std::erase(open_, &crew);
-    changed_.wait(lock, [&crew] { return crew.helpers == 0; });
+    while (crew.helpers > 0) {
+      if (Crew* inner = crew_in_need(&crew))
+        help_with(*inner, lock);
+      else
+        changed_.wait(lock);
+    }
   }
 
  private:
@@ -121,11 +144,22 @@ class Pool {
     }
   }
 
-  /// The outermost call first: its tasks are the longest.
-  Crew* crew_in_need() const {
-    const auto found = std::find_if(open_.begin(), open_.end(),
-                                    [](const Crew* crew) { return crew->wanted() > 0; });
+  /// The outermost call first: its tasks are the longest. within: of calls within that one alone; null:
+  /// of all.
+  Crew* crew_in_need(const Crew* within) const {
+    const auto found = std::find_if(open_.begin(), open_.end(), [within](const Crew* crew) {
+      return crew->wanted() > 0 && (within == nullptr || crew->is_within(*within));
+    });
     return found == open_.end() ? nullptr : *found;
+  }
+
+  /// @pre the lock is held; it is held again afterwards
+  void help_with(Crew& crew, std::unique_lock<std::mutex>& lock) {
+    ++crew.helpers;
+    lock.unlock();
+    crew.work();
+    lock.lock();
+    if (--crew.helpers == 0) changed_.notify_all();
   }
 
   void help();
@@ -146,18 +180,13 @@ void Pool::help() {
   pool_of_this_thread = this;
   std::unique_lock lock(mutex_);
   while (!closing_) {
-    Crew* crew = crew_in_need();
-    if (crew == nullptr) {
-      ++idle_;
-      changed_.wait(lock);
-      --idle_;
+    if (Crew* crew = crew_in_need(nullptr)) {
+      help_with(*crew, lock);
       continue;
     }
-    ++crew->helpers;
-    lock.unlock();
-    crew->work();
-    lock.lock();
-    if (--crew->helpers == 0) changed_.notify_all();
+    ++idle_;
+    changed_.wait(lock);
+    --idle_;
   }
 }
 
