@@ -1,7 +1,7 @@
 // Temperatures of films that a motion in time changes: effective viscosity and temperature of each
 // bearing, and those that the motion would have in balance.
 #include <analysis/transient/kept_in_time.hpp>
-#include <results/plot_buffer.hpp>
+#include <results/linear_limits.hpp>
 #include <results/transient_output.hpp>
 
 #include <fmt/format.h>
