@@ -43,6 +43,22 @@ void empty(const fs::path& folder) {
     fs::remove_all(file, ignored);
 }
 
+/// Steps that ask for the deck with other values of some keys (maps, reports) get it, beside what is set.
+/// deck and o live as long as one another.
+void read_again_in(run::RunOptions& o, const deck::ParsedDeck& deck,
+                   const std::vector<std::string>& set) {
+  o.variant = [&deck, set](const std::string& setting) {
+    std::vector<std::string> one = set;
+    one.push_back(setting);
+    return deck.load(one);
+  };
+  o.build = [&deck, set](const std::vector<std::string>& settings) {
+    std::vector<std::string> one = set;
+    one.insert(one.end(), settings.begin(), settings.end());
+    return deck.load(one);
+  };
+}
+
 class Runner {
  public:
   /// rank: of this process among those of the sweep.
@@ -111,16 +127,7 @@ class Runner {
     if (!whole)
       for (const Response& r : plan_.responses)
         o.only_files.push_back(file_of(r));
-    o.variant = [&](const std::string& setting) {
-      std::vector<std::string> one = set;
-      one.push_back(setting);
-      return deck_.load(one);
-    };
-    o.build = [&](const std::vector<std::string>& settings) {
-      std::vector<std::string> one = set;
-      one.insert(one.end(), settings.begin(), settings.end());
-      return deck_.load(one);
-    };
+    read_again_in(o, deck_, set);
     return steps::run_deck(deck_.load(set), o);
   }
 
@@ -322,7 +329,9 @@ int list_tables(const SweepOptions& options) {
   run::RunOptions o;
   o.quiet = true;
   o.output = root / "as_it_is";
-  const int code = steps::run_deck(deck::load_model(options.deck, read), o);
+  const deck::ParsedDeck deck(options.deck, options.read.files_allowed);
+  read_again_in(o, deck, read.set);
+  const int code = steps::run_deck(deck.load(read.set), o);
   for (const std::string& name : list_responses(o.output))
     std::printf("%s\n", name.c_str());
   return code;

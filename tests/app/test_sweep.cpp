@@ -424,6 +424,13 @@ TEST_F(Sweep, WordsInHdf5) {
     EXPECT_NE(bytes.find(word), std::string::npos) << word;
 }
 
+// A map of stability reads the deck again with other values of its parameter.
+TEST_F(Sweep, ListsThoseOfMapsToo) {
+  const std::string deck = std::string(WHIRL_SOURCE) + "/examples/07_internal_damping/deck.toml";
+  ASSERT_EQ(whirl("sweep '" + deck + "' --list -o s"), 0) << log_;
+  EXPECT_NE(log_.find("stability"), std::string::npos) << log_;
+}
+
 TEST_F(Sweep, ListsWhatCanBeAResponse) {
   ASSERT_EQ(whirl("sweep d.toml --list -o s"), 0);
   EXPECT_NE(log_.find("c_undamped:speed [rpm]"), std::string::npos) << log_;
