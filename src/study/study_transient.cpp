@@ -1,4 +1,5 @@
 // The transient of a study: one ladder of integrators, accuracies, steps and meshes.
+#include <analysis/transient/kept_in_time.hpp>
 #include <run/job.hpp>
 #include <run/results_folder.hpp>
 #include <study/study_parts.hpp>
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <optional>
 
 namespace whirl::study {
 
@@ -177,11 +179,19 @@ struct Bench {
     const auto points = results::watched_points(job);
     Sampler sampler(job, points, exact, start.state.t, o.integrator.t_end, 200);
     analysis::PeakTracker peaks(points, job.reference());
+    std::vector<analysis::Observer*> observers{&sampler, &peaks};
+    std::optional<analysis::KeptInTime> temperatures;
+    if (!law.linear && analysis::KeptInTime::any(job.system())) {
+      temperatures.emplace(job.system(), start.state.t, law.duration, c.dt, nullptr);
+      observers.push_back(&*temperatures);
+      o.between_steps = [&temperatures](double t, system::Frames& f) { temperatures->apply(t, f); };
+      if (c.dt == 0.0) o.integrator.dt_max = std::min(o.integrator.dt_max, temperatures->every());
+    }
     analysis::StudySample s;
     s.setting = c;
     try {
       const analysis::TransientResult r =
-          analysis::run_transient(problem, start.state, o, {&sampler, &peaks});
+          analysis::run_transient(problem, start.state, o, observers);
       s.ok = r.reason == analysis::StopReason::end_time;
       if (!s.ok) s.note = fmt::format("{} {}", to_string(r.reason), r.detail);
       s.seconds = r.seconds;

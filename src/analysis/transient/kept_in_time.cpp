@@ -57,7 +57,7 @@ void KeptInTime::step(StepAccess& s) {
   while (s.t1() >= look_at(looks_ + 1))
     ++looks_;
   last_step_ = s.t1() - s.t0();
-  look(s.end());
+  look(s.at(look_at(looks_)));  // whatever the steps are
 }
 
 void KeptInTime::apply(double t, system::Frames& frames) {
