@@ -484,6 +484,18 @@ void extrapolate(HeatBalance& fine, const HeatBalance& coarse, double share) {
   fine.journal += share * (fine.journal - coarse.journal);
 }
 
+/// Temperatures so far apart on two grids say nothing of a third.
+bool resolved(const HeatBalance& fine, const HeatBalance& coarse, double supply) {
+  constexpr double most = 0.5, least = 1.0;  // of the rise; K
+  for (std::size_t k = 0; k < fine.pads.size(); ++k) {
+    const double hottest = fine.pads[k].film_hottest;
+    if (!(std::abs(hottest - coarse.pads[k].film_hottest) <=
+          most * std::abs(hottest - supply) + least))
+      return false;
+  }
+  return true;
+}
+
 HeatSettings halved(HeatSettings s) {
   for (std::size_t* n : {&s.cells, &s.layers, &s.wall_layers}) {
     WHIRL_EXPECTS(*n % 2 == 0);
@@ -509,6 +521,8 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
   for (std::size_t k = 0; k < s.grids; ++k) {
     if (k > 0) grid = halved(grid);
     found.push_back(balance_on_grid(pads, grid));
+    if (k > 0 && !resolved(found[k - 1], found[k], s.supply_temperature))
+      return std::move(found.front());
   }
   double share = 1.0;
   for (std::size_t order = 1; order < s.grids; ++order, share = share / (2.0 + share))
