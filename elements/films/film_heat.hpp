@@ -14,7 +14,8 @@
 //   T_in = s T_out + (1 - s) T_supply
 // with the share s of hot oil in what enters, a number of experience: the least known one here. Given the flows all of this is linear in the temperatures, and is solved at once.
 // A film on a grid (grid_film.hpp): flow, loss and what is conducted across are the means over the length
-// of what it finds there; recesses share one temperature with the lands beside them.
+// of what it finds there; recesses share one temperature with the lands beside them, and the oil of a
+// relief track takes no heat.
 //
 // The oil of the film's equation has at each place the viscosity eta_e with which shear is right,
 //   1/eta_e = int dzeta/eta(T).

@@ -724,8 +724,8 @@ void GridPad::Solver::add_heat(GridField& out) const {
     const std::size_t own = pad_.round_ && f == n_ ? 0 : f, l = left_of(own), r = right_of(own);
     const double angle = pad_.start_ + out.face_place[f];
     const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
-    const auto add = [&](std::size_t band, double share, double before, double behind, bool track) {
-      if (track) return;
+    const auto add = [&](std::size_t band, double share, double before, double behind) {
+      if ((l != groove && pad_.open(l, band)) || (r != groove && pad_.open(r, band))) return;
       const Stretch x = face(own, band);
       out.filled[f] += share * (S * (in_.clearance * circle + x.s / x.r) + (before - behind) / x.r);
       const double heat = share * (S * S * (x.square - x.s * x.s / x.r) +
@@ -736,10 +736,8 @@ void GridPad::Solver::add_heat(GridField& out) const {
       if (f < n_) driven[f + 1] += first ? heat : 0.5 * heat;
     };
     for (std::size_t j = 0; j < m_; ++j) {
-      const std::size_t k = node(l, j), m = node(r, j);
-      const bool track = (k < side && open_[k] != 0) || (m < side && open_[m] != 0);
       for (const Piece& piece : pieces(j))
-        add(piece.band, piece.share, pressure(k), pressure(m), track);
+        add(piece.band, piece.share, pressure(node(l, j)), pressure(node(r, j)));
     }
     // at the side itself the pressure is nowhere any: what is dragged along
     const Stretch x = face(own, bands_ - 1);

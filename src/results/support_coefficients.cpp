@@ -135,15 +135,37 @@ double grid_error_of(const model::FiniteJournal& law, const elements::LateralMot
   return distance(tangent(one), tangent(other));
 }
 
-/// By the grid of the heat balance. node: of the state.
+/// Moves a journal to where its film carries `wanted`, N, on the shaft; false: there is no such place near.
+bool move_to_load(const elements::FiniteJournal& film, const Vec2& wanted,
+                  elements::LateralMotion& m) {
+  const elements::FilmLaw<elements::FiniteJournal> law{film};
+  constexpr int most = 20;
+  constexpr double enough = 1e-6;
+  for (int k = 0; k < most; ++k) {
+    Vector<4> z;
+    law.force(m, z);
+    const Vec2 off = z.head<2>() - wanted;
+    if (!off.allFinite()) return false;
+    if (off.norm() <= enough * wanted.norm()) return true;
+    m.r += film_tangent(film, m)[0].inverse() * off;
+  }
+  return false;
+}
+
+/// By the grid of the heat balance, under the same load: near contact a place says little of another
+/// clearance. node: of the state.
 double heat_error_of(const model::FiniteJournal& law, elements::LateralMotion m,
                      const assembly::FilmBearing& heated, const assembly::NodeAt& node) {
   elements::FiniteJournal film = assembly::make_finite_journal(law, assembly::own_grid(law));
   film.kept_from = heated.kept_from;
   const std::array<Mat2, 2> own = film_tangent(film, m);
   const std::vector<double> kept = heated.finer_heat(node).kept;
+  Vector<4> load;
+  elements::FilmLaw<elements::FiniteJournal>{film}.force(m, load);
   film.kept_from = 0;
   m.kept = kept.data();
+  elements::LateralMotion moved = m;
+  if (move_to_load(film, load.head<2>(), moved)) m = moved;
   return distance(own, film_tangent(film, m));
 }
 

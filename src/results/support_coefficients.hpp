@@ -83,8 +83,9 @@ struct SupportCoefficients {
   /// those of a film that is solved along the axis too (grid_film.hpp; its own error is about 1e-3), at
   /// the same place and as isoviscous films, in the same norm. NaN: no such profile.
   double axial_error = nan;
-  /// Of films with heat: how far K and C at the same place are from those with the viscosities and
-  /// clearances of a finer grid of the heat balance, in the same norm. NaN: no heat.
+  /// Of films with heat: how far K and C are from those with the viscosities and clearances of a
+  /// finer grid of the heat balance, of journals under the same load, of pads that tilt at the same
+  /// place, in the same norm. NaN: no heat.
   double heat_error = nan;
   /// Of tilting pads; K and C are then what the shaft sees at the frequency of its own spin, with
   /// the pads following.

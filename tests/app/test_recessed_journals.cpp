@@ -335,6 +335,8 @@ TEST(RecessedJournals, HeatOfAPressureDam) {
       out.push_back(c.rows.at(k).at(c.column("hottest face [degC]")));
     const double lost = c.rows.at(2).at(c.column("power loss [W]"));
     EXPECT_NEAR(c.rows.at(2).at(c.column("heat into journal [W]")), 0.0, 1e-6 * lost);
+    const Columns coefficients = d.csv("films_coefficients.csv");
+    EXPECT_LT(coefficients.rows.at(0).at(coefficients.column("heat error [-]")), 1e-2);
     return out;
   };
   const std::vector<double> plain = faces("shape = \"two_grooves\"\ngroove = \"20 deg\"\n"),

@@ -191,6 +191,23 @@ TEST(FilmHeat, TheHeatOfRecesses) {
       }
 }
 
+// Where film has ruptured the filled gap is dragged along whole: beside a track, too.
+TEST(FilmHeat, RupturedGapsCarryHalfTheSpeed) {
+  const std::vector<Recess> track{{0.0, 160 * pi / 180, 0, 0, 0.3, true}};
+  for (const auto& recesses : {std::vector<std::vector<Recess>>{{}, {}}, {track, track}}) {
+    const FiniteJournal film = on_grid(recesses);
+    const FilmField f = sample_film(film, 1, at(Vec2(0.3 * c, -0.7 * c)), 49);
+    int ruptured = 0;
+    for (std::size_t i = 1; i + 1 < f.theta.size(); ++i) {
+      if (f.wet[i - 1] || f.wet[i] || f.wet[i + 1]) continue;
+      ++ruptured;
+      const double dragged = 0.5 * R * Omega * L * f.gap[i];
+      EXPECT_NEAR(f.filled[i], dragged, 2e-3 * dragged) << i;
+    }
+    EXPECT_GT(ruptured, 5);
+  }
+}
+
 // What the difference of two equilibria says of a hot film is what its linear law says.
 TEST(FilmHeat, CoefficientsAreDifferencesOfEquilibria) {
   FiniteJournal film = split_bearing();
