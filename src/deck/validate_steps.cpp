@@ -199,23 +199,33 @@ void check_torques(const model::Model& m, Problems& out) {
 }
 
 void check_maps(const model::Model& m, Problems& out) {
+  const auto mapped = [](const model::Bearing& b) { return *model::traits_of(b.law).mapped; };
   for (const auto& s : m.steps) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
     if (!map) continue;
-    for (const std::string& name : map->bearings)
-      if (std::none_of(m.bearings.begin(), m.bearings.end(),
-                       [&](const model::Bearing& b) { return b.name == name; }))
+    for (const std::string& name : map->bearings) {
+      const auto found = std::find_if(m.bearings.begin(), m.bearings.end(),
+                                      [&](const model::Bearing& b) { return b.name == name; });
+      if (found == m.bearings.end())
         report(
             out, "E80",
             fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name),
             "", s.where);
-    const bool some =
-        std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
-          return model::traits_of(b.law).acts != model::Acts::as_constraint && !b.to;
-        });
+      else if (!mapped(*found))
+        report(out, "E80",
+               fmt::format("step '{}' names bearing '{}', which has no lateral stiffness to vary",
+                           s.name, name),
+               "name supports that carry the shaft laterally", s.where);
+    }
+    const bool some = std::any_of(m.bearings.begin(), m.bearings.end(),
+                                  [&](const model::Bearing& b) { return !b.to && mapped(b); });
     if (map->bearings.empty() && !some)
-      report(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name),
-             "give the bearing a stiffness (type \"linear\")", s.where);
+      report(out, "E80",
+             fmt::format("step '{}' has no bearing to vary: none carries a shaft laterally by a "
+                         "stiffness of its own",
+                         s.name),
+             "give the bearing a stiffness (type \"linear\"), or name the supports in 'bearings'",
+             s.where);
   }
 }
 

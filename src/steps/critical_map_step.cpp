@@ -1,5 +1,6 @@
 // A critical-map step: undamped critical speeds against the stiffness of the supports.
 #include <analysis/spectra/critical.hpp>
+#include <core/contract.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
 #include <results/support_coefficients.hpp>
@@ -91,38 +92,19 @@ model::Model with_stiffness(const model::Model& m, const std::vector<std::size_t
   return out;
 }
 
-/// Bearings to vary, by number. Errors: E80.
-std::vector<std::size_t> chosen_bearings(const model::Model& m, const model::Step& step,
-                                         const model::CriticalMapStep& law) {
+/// Bearings to vary, by number: at least one, all of them with a stiffness (check_maps of the deck).
+std::vector<std::size_t> chosen_bearings(const model::Model& m, const model::CriticalMapStep& law) {
+  const auto is_named = [&](const model::Bearing& b) {
+    return std::find(law.bearings.begin(), law.bearings.end(), b.name) != law.bearings.end();
+  };
   std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < m.bearings.size() && law.bearings.empty(); ++i)
-    if (model::traits_of(m.bearings[i].law).mapped && !m.bearings[i].to) chosen.push_back(i);
-  for (const std::string& name : law.bearings) {
-    const auto found = std::find_if(m.bearings.begin(), m.bearings.end(),
-                                    [&](const model::Bearing& b) { return b.name == name; });
-    if (found == m.bearings.end())
-      throw run_error("E80",
-                      fmt::format("step '{}' names bearing '{}', which the deck does not have",
-                                  step.name, name),
-                      "", step.name);
-    if (!model::traits_of(found->law).mapped)
-      throw run_error(
-          "E80",
-          fmt::format("step '{}' names bearing '{}', which has no lateral stiffness to vary",
-                      step.name, name),
-          "name supports that carry the shaft laterally", step.name);
-    chosen.push_back(static_cast<std::size_t>(found - m.bearings.begin()));
+  for (std::size_t i = 0; i < m.bearings.size(); ++i) {
+    const model::Bearing& b = m.bearings[i];
+    const bool varied =
+        law.bearings.empty() ? *model::traits_of(b.law).mapped && !b.to : is_named(b);
+    if (varied) chosen.push_back(i);
   }
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  if (chosen.empty())
-    throw run_error(
-        "E80",
-        fmt::format("step '{}' has no bearing to vary: none carries a shaft laterally by a "
-                    "stiffness of its own",
-                    step.name),
-        "give the bearing a stiffness (type \"linear\"), or name the supports in 'bearings'",
-        step.name);
+  WHIRL_EXPECTS(!chosen.empty());
   return chosen;
 }
 
@@ -177,7 +159,7 @@ void add_map(results::FrequencyStep& s, const model::Model& model,
 
 void run_critical_map_step(run::Job& job, const model::Step& step,
                            const model::CriticalMapStep& law) {
-  const std::vector<std::size_t> chosen = chosen_bearings(job.model, step, law);
+  const std::vector<std::size_t> chosen = chosen_bearings(job.model, law);
   results::FrequencyStep s(job, step, "critical_map", "critical-speed map", law.max_speed);
   analysis::CriticalMapOptions o;
   o.critical.max_speed = law.max_speed;

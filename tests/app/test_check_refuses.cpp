@@ -86,6 +86,15 @@ TEST_F(CheckRefuses, WhatRunRefuses) {
       {"a map over a bearing that is not there", "E80",
        rotor(linear + map + "bearings = [\"N\"]\n")},
       {"a map with nothing to vary", "E80", rotor(map)},
+      {"a map over bearings without a stiffness of their own", "E80",
+       rotor("[[bearing]]\nname = \"B\"\nat = \"a:end\"\ntype = \"linear\"\nkxx = \"1e6 "
+             "N/m\"\n" +
+             map)},
+      {"a map over a bearing that only holds the shaft along its axis", "E80",
+       rotor(linear +
+             "[[bearing]]\nname = \"B\"\nat = \"a:start\"\ntype = \"linear\"\nkxx = \"1e6 "
+             "N/m\"\n" +
+             map + "bearings = [\"B\"]\n")},
       {"a shaft held where it shall turn", "E78",
        rotor("[[bearing]]\nat = \"a:end\"\ntype = \"rigid\"\ndirections = [\"rx\"]\n[[step]]\ntype "
              "= \"modal\"\nspeed = \"3000 rpm\"\n")},
