@@ -51,6 +51,31 @@ function(whirl_precompile TARGET HEADER LEVEL)
   target_precompile_headers(${TARGET} REUSE_FROM ${pch})
 endfunction()
 
+# Kernels that exist once per instruction set and are chosen at run time, so that one program is fast where the machine allows and runs
+# everywhere: <BASE>_base.cpp, <BASE>_avx2.cpp, <BASE>_avx512.cpp of one source. They use no code shared with others (lu_kernel.hpp).
+# The sanitizers watch one of the three (check_sanitized.sh runs that one), without the long work of the highest optimisation.
+function(whirl_instruction_sets BASE)
+  set(files ${BASE}_base.cpp ${BASE}_avx2.cpp ${BASE}_avx512.cpp)
+  set(flags -O3 -ffp-contract=fast -Wno-psabi ${ARGN})
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
+    set_property(SOURCE ${BASE}_base.cpp ${BASE}_avx512.cpp APPEND PROPERTY COMPILE_OPTIONS -fno-sanitize=all)
+    list(APPEND flags -O1)
+  endif()
+  set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS ${flags})
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|amd64|AMD64")
+    set_property(SOURCE ${BASE}_avx2.cpp ${BASE}_avx512.cpp APPEND PROPERTY COMPILE_OPTIONS -mavx2 -mfma)
+    set_property(SOURCE ${BASE}_avx512.cpp APPEND PROPERTY COMPILE_OPTIONS -mavx512f)
+  endif()
+  set_source_files_properties(${files} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+# The same of element loops, which gain nothing from vectors of 512 bits.
+function(whirl_lanes BASE)
+  whirl_instruction_sets(${BASE} -fno-math-errno)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|amd64|AMD64")
+    set_property(SOURCE ${BASE}_avx512.cpp APPEND PROPERTY COMPILE_OPTIONS -mavx512vl -mprefer-vector-width=256)
+  endif()
+endfunction()
+
 # The fuzzer's build instruments what reads something that a user gives; these are there to be linked.
 set(WHIRL_NOT_FUZZED la plot meshes)
 function(whirl_component NAME)
@@ -91,9 +116,10 @@ function(whirl_component NAME)
 endfunction()
 
 # A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.
-# UNITY: so many files a unit, where WHIRL_UNITY joins files at all and the folder's files share no names.
+# UNITY: so many files a unit, where WHIRL_UNITY joins files at all and the folder's files share no names. UNITS: so many units, each file
+# in that of its name's hash: one more file leaves the others where they are.
 function(whirl_tests NAME)
-  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT;PCH;UNITY" "DEPS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT;PCH;UNITY;UNITS" "DEPS;PROPERTIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/test_*.cpp)
   if(sources)
     add_executable(test_${NAME} ${sources})
@@ -102,8 +128,19 @@ function(whirl_tests NAME)
     if(A_PCH)
       whirl_precompile(test_${NAME} ${A_PCH} -O1 GTest::gtest)
     endif()
-    if(A_UNITY)
+    if(A_UNITS)
+      set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${WHIRL_UNITY_BUILD} UNITY_BUILD_MODE GROUP)
+      foreach(source ${sources})
+        get_filename_component(stem ${source} NAME_WE)
+        string(MD5 hash ${stem})
+        string(SUBSTRING ${hash} 0 4 digits)
+        math(EXPR unit "0x${digits} % ${A_UNITS}")
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${unit})
+      endforeach()
+    elseif(A_UNITY)
       set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${WHIRL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${A_UNITY})
+    endif()
+    if(A_UNITS OR A_UNITY)
       if(WHIRL_UNITY_BUILD)   # fixtures in unnamed namespaces stand in an included file then
         target_compile_options(test_${NAME} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
       endif()

@@ -17,6 +17,8 @@ cmake --preset asan -DWHIRL_BUILD_TESTS=ON >/dev/null
 cmake --build --preset asan --target whirl "${suites[@]/#/test_}"
 
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:exitcode=99 UBSAN_OPTIONS=print_stacktrace=1
+# of the kernels that exist once per instruction set the sanitizers watch these (cmake/WhirlComponent.cmake)
+if grep -qw avx2 /proc/cpuinfo; then export WHIRL_ISA=avx2; fi
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 export results build=$PWD/build/asan source=$PWD
