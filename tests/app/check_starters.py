@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The starters of `whirl new --machine`: each is checked with every limit of its questions, and run as it is and with every word.
+"""The starters of `whirl new --machine`: each is checked with every limit of its questions, and run as it is and with every word. What the run as it is
+writes is held against what was approved (tests/approved).
 
     check_starters.py WHIRL
 """
@@ -13,6 +14,7 @@ import tempfile
 import tomllib
 
 program = sys.argv[1]
+approved = pathlib.Path(__file__).resolve().parents[1] / "approved"
 machines = {"compressor", "fan", "flywheel", "gas_turbine", "geared", "motor", "pump", "spindle", "train", "turbocharger", "vertical_pump"}
 steps = {  # what each must have run, and a number of its results within limits that hold for such a machine
     "compressor": ("lateral_compliance.csv", "lateral_minimum_clearance_modes_unbalance.csv", "critical speed [rpm]", 2000, 9000),
@@ -89,9 +91,12 @@ with tempfile.TemporaryDirectory() as folder:
                 assert ran.returncode == 0, (machine, key, answer, ran.stdout, ran.stderr)
             seen.add(text)
         assert len(seen) >= 1 + sum(len(words) - 1 for _, words, _, _ in asked.values() if words), machine
-        ran = whirl("run", file.name, "--quiet", "-o", f"results_{machine}", cwd=folder)
-        assert ran.returncode == 0, (machine, ran.stdout, ran.stderr)
-        results = folder / f"results_{machine}"
+        results = folder / machine
+        log = folder / f"{machine}.log"
+        with log.open("w") as said:
+            code = subprocess.run([program, "run", file.name, "-o", machine], cwd=folder, stdout=said, stderr=subprocess.STDOUT).returncode
+        assert code == 0, (machine, log.read_text())
+        subprocess.run([sys.executable, approved / "approved.py", machine, log.name, approved / f"starter_{machine}.txt"], cwd=folder, check=True)
         needed, table, column, low, high = steps[machine]
         assert (results / needed).exists(), (machine, sorted(p.name for p in results.glob("*.csv")))
         value = number(results / table, column)

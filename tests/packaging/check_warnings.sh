@@ -2,14 +2,17 @@
 # Sources and headers of the product parse each by itself, without precompiled headers and without a warning: a missing #include
 # fails here. Warnings that need whole builds are the builds' own (WHIRL_WERROR=ON).
 #   check_warnings.sh SOURCE                   all sources
-#   check_warnings.sh SOURCE --since COMMIT    sources and headers that differ from a commit
+#   check_warnings.sh SOURCE --since COMMIT [MOST]   sources and headers that differ from a commit; MOST: so many at most, the largest
+#                                              changes first (default: all of them)
 #   check_warnings.sh SOURCE FILE...
 set -euo pipefail
 cd "$1"
 shift
 kinds=('src/*.cpp' 'elements/*.cpp' 'meshes/*.cpp')
 case "${1:-}" in
-  --since) mapfile -t files < <(git diff --name-only --no-renames --diff-filter=AM "$2" -- "${kinds[@]}" 'src/*.hpp' 'elements/*.hpp' 'meshes/*.hpp') ;;
+  --since) most=${3:-}
+           mapfile -t files < <(git diff --numstat --no-renames --diff-filter=AM "$2" -- "${kinds[@]}" 'src/*.hpp' 'elements/*.hpp' 'meshes/*.hpp' |
+                                sort -rn | cut -f3) ;;
   '')      mapfile -t files < <(git ls-files "${kinds[@]}") ;;
   *)       files=("$@") ;;
 esac
@@ -30,6 +33,10 @@ alone=()
 for file in "${files[@]}"; do
   spoken_for "$file" || alone+=("$file")
 done
+if [ -n "${most:-}" ] && [ ${#alone[@]} -gt "$most" ]; then
+  echo "${#alone[@]} files differ from $2: the $most that changed most are looked at"
+  alone=("${alone[@]:0:$most}")
+fi
 parse() {
   echo "#include \"$1\"" |
     g++ -x c++ - -std=c++20 -fsyntax-only -Wall -Wextra -Wshadow -Wconversion -Wno-psabi -Wno-unused-function -Werror \
