@@ -450,6 +450,20 @@ Problem mismatch(std::string_view text, const Quantity& q, const Dimension& want
   return p;
 }
 
+/// A key given in K holds a difference, which has no zero of degC or degF in it.
+std::optional<Problem> no_difference(std::string_view text, const Quantity& q,
+                                     std::string_view wanted) {
+  if (wanted != "K" || q.offset == 0) return {};
+  Problem p;
+  p.code = "E10";
+  p.message =
+      fmt::format("\"{}\" is a temperature where a difference of temperatures is needed", text);
+  p.hint = fmt::format("write it in K{}", q.num == q.den ? ", which is as large as a degree Celsius"
+                                                         : ": a degree Fahrenheit is 5/9 K");
+  p.length = std::max<std::size_t>(text.size(), 1);
+  return p;
+}
+
 }  // namespace
 
 bool Dimension::dimensionless() const {
@@ -498,6 +512,7 @@ Converted convert(std::string_view text, std::string_view wanted) {
   const auto scale = agree(p.quantity.dimension, want);
   if (!scale || (!p.quantity.has_unit && !want.dimensionless()))
     return {0, mismatch(text, p.quantity, want, wanted)};
+  if (auto problem = no_difference(text, p.quantity, wanted)) return {0, std::move(problem)};
   const double v = p.quantity.value() * *scale;
   if (!std::isfinite(v))
     return {0,
@@ -528,6 +543,8 @@ Factor factor(std::string_view given, std::string_view wanted) {
     }
     return f;
   }
+  f.problem = no_difference(given, p.quantity, wanted);
+  if (f.problem) return f;
   f.num = p.quantity.has_unit ? p.quantity.number * p.quantity.num * *scale : 1;
   f.den = p.quantity.den;
   f.offset = p.quantity.offset;
