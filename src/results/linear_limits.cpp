@@ -182,6 +182,28 @@ std::string moments_along_shafts(const model::Model& m) {
       names);
 }
 
+std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds) {
+  WHIRL_EXPECTS(!speeds.empty());
+  constexpr std::size_t few = 16;
+  const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
+  const double first = *least, last = *most;
+  std::vector<double> out{first, 0.5 * (first + last), last};
+  if (speeds.size() <= few) out.insert(out.end(), speeds.begin(), speeds.end());
+  for (const model::Bearing& b : job.model.bearings) {
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    const double ratio = job.model.shafts[b.at.shaft].speed_ratio;
+    if (!table || ratio == 0.0) continue;
+    std::vector<double> rows;
+    for (const double row : table->speed)
+      if (row / ratio > first && row / ratio < last) rows.push_back(row / ratio);
+    const std::size_t every = (rows.size() + few - 1) / few;
+    for (std::size_t k = 0; k < rows.size(); k += every)
+      out.push_back(rows[k]);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());

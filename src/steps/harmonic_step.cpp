@@ -341,8 +341,10 @@ void HarmonicRun::judge_mesh() {
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s_, points_.back().Omega, beyond * top);
   results::warn_of_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
-  const double first = points_.front().Omega, last = points_.back().Omega;
-  results::warn_of_growth(s_, {first, 0.5 * (first + last), last}, results::motion_of(law_.motion));
+  const std::vector<double> speeds =
+      asynchronous_ ? std::vector<double>{law_.speed} : results::speeds_of(*law_.speeds);
+  results::warn_of_growth(s_, results::speeds_to_judge(job_, speeds),
+                          results::motion_of(law_.motion));
 }
 
 /// At the largest response, beside the shapes.

@@ -354,3 +354,79 @@ zones = {}
   EXPECT_NEAR(zone.at("amplitude [um]"), 2e6 * peak.at("amplitude [m]"), 1e-3);
   EXPECT_NEAR(zone.at("speed [rpm]"), 3021.6, 0.1);
 }
+
+// An asymmetric shaft on unequal supports has three bands of parametric instability, where the sum of two
+// frequencies is twice the speed: 1400 to 1476, 1579 to 1645 and 1754 to 1815 rpm by the Floquet multipliers
+// of its two equations of motion. No speed of a coarse list lies in the first and the last.
+TEST(UnevenRotors, BandsBetweenTheSpeedsAreFound) {
+  const auto deck = [](int points) {
+    const std::string section =
+        "length = \"500 mm\"\nshear = \"none\"\nod = \"30 mm\"\nmin_elements = 2\ngeneral = { A = "
+        "\"700 "
+        "mm^2\", Iy = \"40000 mm^4\", Iz = \"30000 mm^4\", J = \"70000 mm^4\", kappa_y = 0.85, "
+        "kappa_z = "
+        "0.85 }\n";
+    return fmt::format(R"(format = 1
+{}[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "light"
+E = "200 GPa"
+G = "77 GPa"
+density = "1 kg/m^3"
+[[shaft]]
+name = "R"
+material = "light"
+[[shaft.section]]
+name = "a"
+{}[[shaft.section]]
+name = "b"
+{}[[disk]]
+name = "d"
+at = "a:end"
+mass = "20 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.05 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "dash"
+at = "d"
+type = "linear"
+kyy = "1.2e5 N/m"
+kzz = "3.6e5 N/m"
+cyy = "10 N.s/m"
+czz = "10 N.s/m"
+[[step]]
+name = "s"
+type = "stability"
+speed = {{ start = "500 rpm", stop = "4000 rpm", points = {} }}
+)",
+                       no_report, section, section, points);
+  };
+  const DeckRun coarse(deck(8));
+  const DeckRun fine(deck(64));
+  ASSERT_EQ(coarse.exit, 0) << coarse.log;
+  const auto bands_of = [](const DeckRun& r) {
+    std::vector<double> out;
+    const whirl::io::Value summary = r.summary("s");
+    for (const whirl::io::Value& b : summary.at("bands").items())
+      for (const char* end : {"from [rpm]", "to [rpm]"})
+        out.push_back(b.at(end).number());
+    return out;
+  };
+  const std::vector<double> found = bands_of(coarse), expected = bands_of(fine);
+  ASSERT_EQ(found.size(), 6u) << coarse.log;
+  ASSERT_EQ(expected.size(), 6u) << fine.log;
+  const double floquet[] = {1400, 1476, 1579, 1645, 1754, 1815};
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(found[k], expected[k], 1e-4 * expected[k]);
+    EXPECT_NEAR(found[k], floquet[k], 1.0);
+  }
+}

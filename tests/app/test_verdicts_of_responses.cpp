@@ -130,3 +130,59 @@ speed = { values = ["3000 rpm", "4000 rpm"] }
   EXPECT_TRUE(d.summary("s").at("stable at the first speed").is_null()) << d.log;
   EXPECT_FALSE(d.summary("u").at("growth not excluded above [Hz]").is_null());
 }
+
+// A table drives the whirl at 2100 rpm and neither below nor above: k/(2 m w) - c/(2 m) = 2.4 1/s.
+TEST(VerdictsOfResponses, SpeedsOfTheListAndRowsOfTablesAreLookedAt) {
+  const auto deck = [](const std::string& speeds) {
+    return R"(format = 1
+[output]
+report = false
+[model]
+gravity = "0 m/s^2"
+[shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 30], ["b", 500, 30]]
+[[disk]]
+name = "d"
+at = "a:end"
+mass = "20 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.05 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "dash"
+at = "d"
+type = "table"
+interpolation = "linear"
+extrapolate = "hold"
+columns = ["speed[rpm]", "kyz[N/m]", "kzy[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
+rows = [[0, 0, 0, 50, 50], [2000, 0, 0, 50, 50], [2100, 2e4, -2e4, 50, 50], [2200, 0, 0, 50, 50], [9000, 0, 0, 50, 50]]
+[[unbalance]]
+at = "d"
+amount = "100 g.mm"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = )" +
+           speeds + "[[step]]\nname = \"h\"\ntype = \"harmonic_response\"\nspeed = " + speeds +
+           "[[step.force]]\nat = \"d\"\nforce = [\"0 N\", \"1 N\", \"0 N\"]\n";
+  };
+  for (const char* speeds : {"{ values = [\"1000 rpm\", \"2100 rpm\", \"3000 rpm\"] }\n",
+                             "{ start = \"1000 rpm\", stop = \"3000 rpm\", points = 40 }\n"}) {
+    const DeckRun r(deck(speeds));
+    ASSERT_EQ(r.exit, 0) << r.log;
+    EXPECT_TRUE(r.says("warning[W13]: step 'u': the rotor is unstable at 2100 rpm")) << r.log;
+    EXPECT_TRUE(r.says("warning[W13]: step 'h': the rotor is unstable at 2100 rpm")) << r.log;
+  }
+  const DeckRun beside(deck("{ values = [\"1000 rpm\", \"1900 rpm\"] }\n"));
+  EXPECT_FALSE(beside.says("W13")) << beside.log;
+}

@@ -345,7 +345,7 @@ void RotatingAxes::balance(double Omega, Complex lambda, const std::vector<Index
 double RotatingAxes::reach(double Omega) const {
   constexpr std::size_t always = 3;  // motions of least frequency
   constexpr double margin = 1.2, far = 4.0;
-  const double joined = static_cast<double>(step_ * harmonics_ + 1) * std::abs(speed(Omega));
+  const double joined = static_cast<double>(joined_multiples()) * std::abs(speed(Omega));
   const double own = frequencies_.size() < always ? 0.0 : frequencies_[always - 1];
   const double most = margin * std::max(joined, own);
   return constant() || frequencies_.empty() || frequencies_.back() <= far * most ? infinity : most;
@@ -558,6 +558,18 @@ class BandSearch {
       if (x.lambda.real() > best.rate + rounding * std::abs(x.lambda)) best = growth_of(x);
     }
     return best;
+  }
+  Visited visit(double Omega) { return {Omega, at(Omega)}; }
+  /// Whether one of the few motions nearest a frequency in rotating axes grows: a look that costs little.
+  bool grows_near(double Omega, double frequency) {
+    ++evaluations;
+    la::ModeOptions l;
+    l.count = 4;
+    l.shift = Complex(0.0, frequency);
+    la::ModeSolver solver(axes_.pattern(), axes_.active(), l);
+    const std::vector<la::Mode>& modes = solver.solve(axes_.at(sense_ * Omega, l.shift.value()));
+    return std::any_of(modes.begin(), modes.end(),
+                       [&](const la::Mode& x) { return x.lambda.real() > noise(Omega); });
   }
   /// The same motion as at a speed near by; where it cannot be followed, the fastest of all.
   Growth follow(double Omega, const Growth& near) {
@@ -794,13 +806,26 @@ InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& sam
   return band;
 }
 
+/// Parametric and combination resonances between the speeds looked at: those at which something grows
+/// near one of the two motions are looked at as the others are.
+void visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense,
+                      std::vector<Visited>& samples) {
+  std::vector<double> speeds;
+  for (const Visited& v : samples)
+    speeds.push_back(v.speed);
+  for (const Resonance& r : axes.resonances(speeds, sense))
+    if (search.grows_near(r.speed, r.frequency)) samples.push_back(search.visit(r.speed));
+  std::sort(samples.begin(), samples.end(),
+            [](const Visited& x, const Visited& y) { return x.speed < y.speed; });
+}
+
 /// Two motions that have bands of their own, at their critical speeds, have one together halfway between
 /// (a combination resonance), which may lie between the speeds looked at.
 std::vector<InstabilityBand> combined_bands(BandSearch& search,
                                             const std::vector<InstabilityBand>& bands) {
   constexpr double aside = 0.02;  // of the way from a band to the place halfway
   std::vector<InstabilityBand> out;
-  const auto visit = [&](double Omega) { return Visited{Omega, search.at(Omega)}; };
+  const auto visit = [&](double Omega) { return search.visit(Omega); };
   const auto grows = [&](const Visited& x) { return x.growth.rate > search.noise(x.speed); };
   const auto lies_in = [](double Omega) {
     return [Omega](const InstabilityBand& b) { return !(Omega < b.low) && !(Omega > b.high); };
@@ -853,19 +878,21 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   for (const double Omega : speeds) {
     if (o.progress)
       o.progress(static_cast<double>(samples.size()) / static_cast<double>(speeds.size()), Omega);
-    samples.push_back({Omega, search.at(Omega)});
-    const Growth& g = samples.back().growth;
-    out.speeds.push_back(Omega);
-    out.growth.push_back(g.rate);
-    out.frequency.push_back(g.frequency);
+    samples.push_back(search.visit(Omega));
   }
-  const auto grows = [&](std::size_t k) { return out.growth[k] > search.noise(speeds[k]); };
-  for (std::size_t k = 0; k < speeds.size(); ++k) {
+  if (!axes.constant()) visit_resonances(search, axes, o.sense, samples);
+  for (const Visited& v : samples) {
+    out.speeds.push_back(v.speed);
+    out.growth.push_back(v.growth.rate);
+    out.frequency.push_back(v.growth.frequency);
+  }
+  const auto grows = [&](std::size_t k) { return out.growth[k] > search.noise(out.speeds[k]); };
+  for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!grows(k)) continue;
     std::size_t last = k;
-    while (last + 1 < speeds.size() && grows(last + 1))
+    while (last + 1 < samples.size() && grows(last + 1))
       ++last;
-    if (o.progress) o.progress(1.0, speeds[k]);
+    if (o.progress) o.progress(1.0, out.speeds[k]);
     out.bands.push_back(measure_band(search, samples, k, last));
     k = last;
   }

@@ -21,6 +21,12 @@
 
 namespace whirl::analysis {
 
+/// Where what varies can join two motions.
+struct Resonance {
+  double speed = 0;      ///< of the reference, rad/s
+  double frequency = 0;  ///< of one of them there, in rotating axes, rad/s
+};
+
 class RotatingAxes {
  public:
   /// harmonics: most of H where the matrices are periodic; 0 is enough on isotropic supports and is
@@ -44,6 +50,8 @@ class RotatingAxes {
   /// Constant in rotating axes.
   bool constant() const { return harmonics_ == 0; }
   Index harmonics() const { return harmonics_; }
+  /// Multiples of the speed at which what varies can join two motions: 1 .. this.
+  Index joined_multiples() const { return step_ * harmonics_ + 1; }
   bool hysteretic() const { return linear_.hysteretic(); }
   /// rad/s, in these axes: beyond it what turns makes no motion grow at speeds up to this one, though
   /// motions are found there; infinite: the motions of least frequency end below it, or not far above. The multiples
@@ -53,6 +61,11 @@ class RotatingAxes {
   double reach(double Omega) const;
   /// Something does turn with the rotor: the matrices in fixed axes are not constant.
   bool turning() const { return turning_; }
+  /// Speeds between the first and the last at which two natural frequencies of the mean matrices, in fixed
+  /// axes, add up to a multiple of the speed of the axes or differ by one, ascending; each frequency between
+  /// the speeds by straight lines.
+  /// @pre ascending speeds; sense: as of BandOptions.
+  std::vector<Resonance> resonances(const std::vector<double>& speeds, double sense) const;
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
   double constant_share(const VecXc& x) const;
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
@@ -119,9 +132,11 @@ struct InstabilityBand {
 
 struct BandOptions {
   std::vector<double>
-      speeds;        ///< rad/s, ascending; more are put in where rotation takes the last stiffness
-  double sense = 1;  ///< -1: the rotor runs backwards, at the negative of all speeds
-  Index modes = 8;   ///< of least frequency in rotating axes
+      speeds;  ///< rad/s, ascending; more are put in where rotation takes the last stiffness, and,
+               ///< where matrices are periodic, where the sum or difference of two frequencies is a
+               ///< multiple of the speed (parametric and combination resonances)
+  double sense = 1;          ///< -1: the rotor runs backwards, at the negative of all speeds
+  Index modes = 8;           ///< of least frequency in rotating axes
   double tolerance = 1e-11;  ///< relative, of the edges
   /// Told before each speed: the share of the speeds that is done, and the speed, rad/s.
   std::function<void(double, double)> progress;
