@@ -16,6 +16,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdio>
 #include <numeric>
 
 namespace whirl::sweep {
@@ -198,6 +199,23 @@ void add_statistics(const io::Table& statistics, std::vector<io::Table>& tables)
                            {0, 1, 8, 12, 13, 9, 14, 15, 10, 16, 17, 18}));
 }
 
+/// "195 of 400 runs gave no 'on': ..": what a probability does not cover.
+std::string uncovered_text(const Plan& plan, const Columns& c) {
+  std::string text;
+  for (const Limit& limit : plan.limits) {
+    const std::vector<double>& values = c.responses[limit.response];
+    const Probability p = probability_beyond(values, c.weight, limit.value, limit.above);
+    if (p.without == 0) continue;
+    text += fmt::format(
+        "{} of {} runs gave no '{}': the probability of {} {} {:.6g} is that of the others; of all "
+        "it is from "
+        "{:.4g} to {:.4g}\n",
+        p.without, values.size(), plan.responses[limit.response].name,
+        plan.responses[limit.response].name, limit.above ? ">" : "<", limit.value, p.least, p.most);
+  }
+  return text;
+}
+
 /// How probable it is to lie beyond the limits asked for.
 io::Table probabilities_table(const Plan& plan, const Columns& c) {
   io::Table t;
@@ -208,13 +226,16 @@ io::Table probabilities_table(const Plan& plan, const Columns& c) {
                {"beyond", "-", ""},
                {"probability", "-", "of independent runs that gave a value"},
                {"error", "-", "standard error; of none or all, what they leave open at 95 %"},
-               {"runs", "-", "that lie there"}};
+               {"runs", "-", "that lie there"},
+               {"runs without a value", "-", ""},
+               {"at least", "-", "of all runs: none of those without a value lies there"},
+               {"at most", "-", "of all runs: all of those without a value lie there"}};
   for (const Limit& limit : plan.limits) {
     const Probability p =
         probability_beyond(c.responses[limit.response], c.weight, limit.value, limit.above);
     t.add({plan.responses[limit.response].name, c.units[limit.response],
            fmt::format("{} {:.6g}", limit.above ? ">" : "<", limit.value), p.value, p.error,
-           static_cast<double>(p.runs)});
+           static_cast<double>(p.runs), static_cast<double>(p.without), p.least, p.most});
   }
   return t;
 }
@@ -419,16 +440,26 @@ Probability probability_beyond(const std::vector<double>& values,
                                const std::vector<double>& weights, double limit, bool above) {
   WHIRL_EXPECTS(values.size() == weights.size());
   Probability p;
-  double n = 0, squares = 0;
+  double n = 0, squares = 0, unknown = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (std::isnan(values[k])) continue;
+    if (std::isnan(values[k])) {
+      ++p.without;
+      unknown += weights[k];
+      continue;
+    }
     ++n;
     if (above ? !(values[k] > limit) : !(values[k] < limit)) continue;
     ++p.runs;
     p.value += weights[k];
     squares += weights[k] * weights[k];
   }
-  if (n == 0) return {nan, nan, 0};
+  const double all = static_cast<double>(values.size());
+  p.least = p.value / all;
+  p.most = (p.value + unknown) / all;
+  if (n == 0) {
+    p.value = p.error = nan;
+    return p;
+  }
   p.value /= n;
   const bool weighted =
       std::any_of(weights.begin(), weights.end(), [](double w) { return w != 1.0; });
@@ -515,6 +546,7 @@ void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& optio
   }
   if (!statistics.rows.empty()) add_statistics(statistics, tables);
   if (!plan.limits.empty()) {
+    if (!options.run.quiet) std::fputs(uncovered_text(plan, c).c_str(), stderr);
     tables.push_back(probabilities_table(plan, c));
     folder.write_table("probabilities.csv", tables.back());
   }

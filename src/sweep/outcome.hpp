@@ -35,8 +35,10 @@ WeightedStatistics weighted_statistics(const std::vector<double>& values,
 
 /// Mean of the weights of the values beyond a limit, with its standard error.
 struct Probability {
-  double value = 0, error = 0;
-  std::size_t runs = 0;  ///< beyond
+  double value = 0, error = 0;  ///< of the runs that gave a value
+  std::size_t runs = 0;         ///< beyond
+  std::size_t without = 0;      ///< gave no value: nobody knows on which side they are
+  double least = 0, most = 0;   ///< of all runs: none, all of those without a value beyond
 };
 Probability probability_beyond(const std::vector<double>& values,
                                const std::vector<double>& weights, double limit, bool above);

@@ -169,6 +169,10 @@ TEST(WeightedSamples, OfEqualWeightAreOrdinaryOnes) {
   const Probability p = probability_beyond(x, one, 3.5, true);
   EXPECT_DOUBLE_EQ(p.value, 0.4);
   EXPECT_DOUBLE_EQ(p.error, std::sqrt(0.4 * 0.6 / 4));
+  // the one that gave none may be on either side
+  EXPECT_EQ(p.without, 1u);
+  EXPECT_DOUBLE_EQ(p.least, 2.0 / 6);
+  EXPECT_DOUBLE_EQ(p.most, 3.0 / 6);
   // none and all: with that probability one outcome in twenty is this one
   for (const double limit : {9.0, 0.0}) {
     const Probability sure = probability_beyond(x, one, limit, true);
