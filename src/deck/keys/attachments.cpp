@@ -245,14 +245,16 @@ void describe(Visitor& v, model::Crack& c) {
   v.quantity("phase", c.phase, "deg", any,
              "body angle of the crack's normal, which points from the axis to the middle of its "
              "mouth, from y towards z");
-  v.choice("breathing", c.breathing,
-           {{"mayes",
-             "open by (1 + cos)/2 of the angle between the normal and open_direction: the "
-             "weight rules"},
-            {"hinge", "open or closed, by the sign of the bending moment at it"},
-            {"response", "smoothly, by the direction of the bending moment at it"},
-            {"open", "always open, as a notch"}},
-           "how it opens and closes");
+  v.choice(
+      "breathing", c.breathing,
+      {{"mayes",
+        "open by (1 + cos)/2 of the angle between the normal and open_direction: the "
+        "weight rules"},
+       {"hinge", "open or closed, by the sign of the bending moment at it"},
+       {"response",
+        "smoothly, by the direction of the bending moment at it; without loss_across as \"hinge\""},
+       {"open", "always open, as a notch"}},
+      "how it opens and closes");
   const bool direction =
       v.quantity(optional("open_direction", "that of gravity"), c.open_direction, "deg", any,
                  "of breathing \"mayes\": direction in space, from y towards z, into which the "
