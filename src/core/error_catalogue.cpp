@@ -603,6 +603,16 @@ const std::vector<CodeInfo>& error_catalogue() {
        "largest coefficient of its kind. Critical speeds and onsets of instability follow the "
        "coefficients: more rows where they bend.",
        ""},
+      {"W17", "a critical speed that separation margins leave out",
+       "A lightly damped critical speed lies nearer to the operating range than its margin asks "
+       "for, and no "
+       "peak of the response says so: the speeds end before it, the unbalance does not drive it, "
+       "or no probe "
+       "sees it. The margins in the table do not cover it.",
+       "[[step]]\ntype = \"unbalance_response\"\noperating_speed = [\"9000 rpm\", \"10000 "
+       "rpm\"]\nspeed = { start = \"500 "
+       "rpm\", stop = \"13000 rpm\", points = 100 }   # to 1.27 times the operating speed at "
+       "least"},
       {"W20", "left out or assumed in a conversion",
        "What another program's file says and a deck has no word for, or what a deck needs and the "
        "file does not say. The same list stands at the head of the deck.",

@@ -8,6 +8,7 @@
 #include <results/compliance.hpp>
 #include <results/frequency.hpp>
 #include <run/progress.hpp>
+#include <steps/api_criticals.hpp>
 #include <steps/api_models.hpp>
 #include <steps/api_stability.hpp>
 #include <steps/step_kinds.hpp>
@@ -18,6 +19,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 namespace whirl::steps {
 
@@ -85,6 +88,9 @@ class SetReport {
                        io::ReportSection& section);
   void add_clearances(const PlacedMode& mode, const model::Step& of, const UnbalanceOutcome& r,
                       double scale, io::ReportSection& section);
+  void judge_criticals();
+  /// The least stable mode of the machine as given, and the figure that shows it.
+  std::pair<WhirlingMode, std::string> stability_as_given();
   void judge_stability();
   std::string bode_of(const model::Step& of, const std::string& probe) const;
   void mark_speeds(plot::Figure& f, double limit) const;
@@ -96,12 +102,13 @@ class SetReport {
   results::Compliance& checks_;
   analysis::JournalWeights weights_;
   std::vector<PlacedMode> modes_;
-  std::size_t order_ = 0;  ///< of the response: that of the rotor's speed
+  std::vector<double> peaks_;  ///< of the responses, those that were judged by their margin, rad/s
+  std::size_t order_ = 0;      ///< of the response: that of the rotor's speed
 };
 
 void SetReport::add(Check c, const std::string& where, std::string figure, std::string source) {
   c.set = machine_.set;
-  c.where = where;
+  if (!where.empty()) c.where = where;
   c.figure = std::move(figure);
   c.source = std::move(source);
   checks_.add(std::move(c));
@@ -357,6 +364,7 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
     const bool damped = row.is_damped(l.damped);
     const bool passed = damped || row.actual >= required;
     const bool undetermined = !passed && std::isnan(row.amplification);
+    if (!damped) peaks_.push_back(row.speed);
     t.add({row.probe, to_rpm(row.speed), row.amplification, 100 * required, 100 * row.actual,
            damped         ? "critically damped"
            : undetermined ? "not determined"
@@ -517,27 +525,53 @@ void SetReport::respond(const PlacedMode& mode) {
   close(sub, fmt::format("response to the unbalance of mode {}", mode.number));
 }
 
+void SetReport::judge_criticals() {
+  const model::Model m = balanced(machine_.model);
+  model::CriticalStep law;
+  law.max_speed = law_.max_speed;
+  law.motion = model::MotionKind::lateral;
+  const model::Step s = part("critical_speeds", law);
+  run::Job sub(m, job_);
+  add(check_critical_speeds(sub, s, law_, machine_, peaks_), "", "",
+      source({"margin", "margin_factor", "margin_offset", "margin_above", "damped"}));
+  close(sub, "damped critical speeds");
+}
+
+std::pair<WhirlingMode, std::string> SetReport::stability_as_given() {
+  const model::Model m = balanced(machine_.model);
+  model::ModalStep law;
+  law.speed = law_.operating[1];
+  law.shapes = 2;
+  law.motion = model::MotionKind::lateral;
+  // without seals there is nothing of level 2 to show
+  const int shown = machine_.seals.empty() ? 2 : 8;
+  law.modes =
+      std::max(shown, Level1::modes_below(job_, m, part("level_2", law), machine_, law.speed));
+  const model::Step s = part(machine_.seals.empty() ? "stability" : "level_2", law);
+  run::Job sub(m, job_);
+  sub.build_for(s);
+  const WhirlingMode least =
+      least_stable(run_modal_step(sub, s, law), sub.system(), machine_, law.speed);
+  std::string figure;
+  if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())
+    figure = sub.report.sections.back().figures.front().name;
+  close(sub, machine_.seals.empty() ? "stability" : "stability, level 2");
+  return {least, figure};
+}
+
 void SetReport::judge_stability() {
   std::optional<WhirlingMode> with_seals;
-  std::string seals_figure;
-  if (!machine_.seals.empty()) {
-    const model::Model m = balanced(machine_.model);
-    model::ModalStep law;
-    law.speed = law_.operating[1];
-    law.shapes = 2;
-    law.motion = model::MotionKind::lateral;
-    law.modes =
-        std::max(8, Level1::modes_below(job_, m, part("level_2", law), machine_, law.speed));
-    const model::Step s = part("level_2", law);
-    run::Job sub(m, job_);
-    sub.build_for(s);
-    with_seals = least_stable(run_modal_step(sub, s, law), sub.system(), machine_, law.speed);
-    if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())
-      seals_figure = sub.report.sections.back().figures.front().name;
-    close(sub, "stability, level 2");
+  std::string figure;
+  if (!machine_.seals.empty() || law_.stages.empty())
+    std::tie(with_seals, figure) = stability_as_given();
+  if (law_.stages.empty()) {
+    Check c = check_as_given(law_, machine_, *with_seals, figure);
+    c.set = machine_.set;
+    checks_.add(std::move(c));
+    return;
   }
   Level1 level(job_, step_, law_, machine_, name_of("level_1"));
-  for (Check& c : level.judge(with_seals, seals_figure)) {
+  for (Check& c : level.judge(with_seals, figure)) {
     c.set = machine_.set;
     checks_.add(std::move(c));
   }
@@ -550,7 +584,8 @@ void SetReport::execute() {
   find_modes();
   for (const PlacedMode& mode : modes_)
     respond(mode);
-  if (!law_.stages.empty()) judge_stability();
+  judge_criticals();
+  judge_stability();
 }
 
 void add_head(run::Job& job, const model::Step& step, const model::ApiLateralStep& law,

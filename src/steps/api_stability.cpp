@@ -48,18 +48,36 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
     return m.kind == analysis::ModeKind::lateral && m.oscillates() &&
            moves(system, m.x, machine.shaft, with_it);
   };
-  const analysis::WhirlMode *best = nullptr, *forward = nullptr, *any = nullptr;
+  const analysis::WhirlMode *best = nullptr, *forward = nullptr, *any = nullptr, *growing = nullptr;
   for (const analysis::WhirlMode& m : modes) {
     if (!lateral(m)) continue;
+    if (m.growth() > 0 && (!growing || m.log_decrement < growing->log_decrement)) growing = &m;
     if (!any || m.frequency < any->frequency) any = &m;
     if (!(m.forwardness > 0)) continue;
     if (!forward || m.frequency < forward->frequency) forward = &m;
     if (m.frequency < std::abs(Omega) && (!best || m.log_decrement < best->log_decrement))
       best = &m;
   }
-  const analysis::WhirlMode* found = best ? best : forward ? forward : any;
-  return found ? WhirlingMode{found->log_decrement, found->frequency, best != nullptr}
+  const analysis::WhirlMode* found = growing ? growing : best ? best : forward ? forward : any;
+  return found ? WhirlingMode{found->log_decrement, found->frequency,
+                              found == growing || found == best, found == growing}
                : WhirlingMode{};
+}
+
+Check check_as_given(const model::ApiLateralStep& law, const ApiMachine& machine,
+                     const WhirlingMode& mode, const std::string& figure) {
+  const bool level_2 = !machine.seals.empty();
+  const double least = level_2 ? law.limits.log_decrement : 0.0;
+  Check c = results::compare(level_2 ? "level 2: log decrement" : "log decrement",
+                             mode.log_decrement, "-", Check::Rule::at_least, least);
+  c.where =
+      fmt::format("{} as given, {:.4g} Hz", level_2 ? "seals" : "machine", to_hz(mode.frequency));
+  if (level_2)
+    c.source =
+        results::source_of(law.standard, law.limits.given, law.limits.source, {"log_decrement"});
+  c.figure = figure;
+  if (mode.grows) c.remark = "a motion grows";
+  return c;
 }
 
 Level1::Level1(run::Job& parent, const model::Step& step, const model::ApiLateralStep& law,
@@ -112,7 +130,7 @@ void Level1::add_couplings() {
   add(law_.cross_coupling_at ? *law_.cross_coupling_at : middle, 1.0);
 }
 
-WhirlingMode Level1::at(double q) {
+WhirlingMode Level1::at(double q, bool whatever_grows) {
   model::Model m = model_;
   // k > 0 drives the whirl from y to z, forward whirl of a shaft that turns so
   const double sense = m.shafts[machine_.shaft].speed_ratio < 0 ? -1.0 : 1.0;
@@ -125,6 +143,7 @@ WhirlingMode Level1::at(double q) {
   o.count = 0;  // all that are slower than the rotor
   o.max_frequency = machine_.ratio * speed;
   o.motion = analysis::Motion::lateral;
+  o.judge = whatever_grows;
   analysis::SpectrumCertificate certificate;
   WhirlingMode found = least_stable(analysis::whirl_modes(linear, speed, o, &certificate),
                                     built.system, machine_, speed);
@@ -272,7 +291,7 @@ std::vector<Check> Level1::judge(const std::optional<WhirlingMode>& with_seals,
                                  const std::string& seals_figure) {
   const model::ApiLimits& l = law_.limits;
   const Curve curve = find_curve();
-  const WhirlingMode anticipated = at(anticipated_);
+  const WhirlingMode anticipated = at(anticipated_, true);
   const double ratio = find_critical_ratio();
   const bool known = !std::isnan(density_) && !std::isnan(ratio);
   const bool in_b =
@@ -294,7 +313,9 @@ std::vector<Check> Level1::judge(const std::optional<WhirlingMode>& with_seals,
   decrement.where = fmt::format("{}, {:.4g} Hz", at_qa, to_hz(anticipated.frequency));
   decrement.source = source({"log_decrement"});
   decrement.figure = s_->file("log_decrement");
-  const double margin = std::isnan(curve.onset) ? reach : curve.onset / anticipated_;
+  if (anticipated.grows) decrement.remark = "a motion grows";
+  double margin = std::isnan(curve.onset) ? reach : curve.onset / anticipated_;
+  if (anticipated.grows) margin = std::min(margin, 1.0);  // faster than the rotor: not on the curve
   Check onset = results::compare("level 1: Q0/QA", margin, "-", Check::Rule::at_least,
                                  in_b ? l.ratio_in_b : l.ratio);
   onset.where = at_qa;
@@ -314,12 +335,8 @@ std::vector<Check> Level1::judge(const std::optional<WhirlingMode>& with_seals,
   out.push_back(std::move(decrement));
   out.push_back(std::move(onset));
   if (with_seals) {
-    Check second = results::compare("level 2: log decrement", with_seals->log_decrement, "-",
-                                    Check::Rule::at_least, l.log_decrement);
-    second.where = fmt::format("seals as given, {:.4g} Hz", to_hz(with_seals->frequency));
-    second.source = source({"log_decrement"});
-    second.figure = seals_figure;
-    second.remark = needed ? "" : "not asked for by level 1";
+    Check second = check_as_given(law_, machine_, *with_seals, seals_figure);
+    if (!needed && second.remark.empty()) second.remark = "not asked for by level 1";
     out.push_back(std::move(second));
   }
   s_->section.text = fmt::format("Without seals, {} at {:.6g} rpm.",

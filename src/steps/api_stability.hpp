@@ -13,13 +13,20 @@ namespace whirl::steps {
 
 struct WhirlingMode {
   double log_decrement = nan, frequency = nan;  ///< -, rad/s
-  bool driven = false;                          ///< forward, and slower than the rotor
+  bool driven = false;                          ///< forward, and slower than the rotor; or it grows
+  bool grows = false;
 };
-/// Of the forward lateral modes of the machine's rotor that are slower than it at a speed of the
-/// reference, the one of least log decrement; where there is none, the slowest forward one, and
+/// The lateral mode of the machine's rotor that grows fastest a turn, whatever way it whirls and however
+/// fast; where none grows, of the forward ones that are slower than the rotor at a speed of the
+/// reference the one of least log decrement; where there is none, the slowest forward one, and
 /// without these the slowest lateral one.
 WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
                           const system::System& system, const ApiMachine& machine, double speed);
+
+/// Level 2: the machine as given, with its seals, against the limit of the log decrement; a machine without
+/// seals only must not grow.
+results::Check check_as_given(const model::ApiLateralStep& law, const ApiMachine& machine,
+                              const WhirlingMode& mode, const std::string& figure);
 
 /// The analysis of one set of bearings, without its seals.
 class Level1 {
@@ -41,7 +48,8 @@ class Level1 {
     std::vector<double> q, log_decrement, frequency;  ///< N/m, -, rad/s
     double onset = nan;
   };
-  WhirlingMode at(double q);
+  /// whatever_grows: also faster than the rotor.
+  WhirlingMode at(double q, bool whatever_grows = false);
   Curve find_curve();
   double find_critical_ratio() const;
   void add_couplings();

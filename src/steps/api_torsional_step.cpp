@@ -81,6 +81,7 @@ class TorsionalReport {
   void add_train();
   void find_modes();
   void list_excitations();
+  double highest_excitation() const;  ///< over the operating speeds, rad/s
   void add_margins();
   void add_interference();
   void add_stresses();
@@ -158,6 +159,15 @@ void TorsionalReport::find_modes() {
   o.motion = analysis::Motion::torsional;
   analysis::SpectrumCertificate certificate;
   modes_ = analysis::whirl_modes(s_.linear, law_.operating[1], o, &certificate);
+  // a mode that an excitation may come near is judged, whatever its number
+  const double highest = (1 + law_.margin) * highest_excitation();
+  if (!modes_.empty() && modes_.back().frequency < highest) {
+    o.count = 0;
+    o.max_frequency = highest;
+    std::vector<analysis::WhirlMode> reached =
+        analysis::whirl_modes(s_.linear, law_.operating[1], o, &certificate);
+    if (reached.size() > modes_.size()) modes_ = std::move(reached);
+  }
   s_.certify(certificate);
   results::MeshAccuracy mesh(s_);
   mesh.look_at(modes_, law_.operating[1]);
@@ -202,6 +212,13 @@ void TorsionalReport::list_excitations() {
       add({fmt::format("{:g}x line frequency", n), 0, n * law_.line_frequency});
   for (const model::ApiTorque& t : law_.torques)
     if (t.harmonics.empty()) add({t.name, t.order * ratio_of(t.at.shaft), t.frequency});
+}
+
+double TorsionalReport::highest_excitation() const {
+  double highest = 0;
+  for (const Excitation& e : excitations_)
+    highest = std::max(highest, e.over(law_.operating)[1]);
+  return highest;
 }
 
 void TorsionalReport::add_margins() {
@@ -624,8 +641,8 @@ void TorsionalReport::add_events() {
 void TorsionalReport::execute() {
   const run::PhaseTimer timer(s_.job, "torsional report");
   add_train();
-  find_modes();
   list_excitations();
+  find_modes();
   add_interference();
   add_margins();
   add_stresses();

@@ -7,6 +7,7 @@
 #include <results/mesh_accuracy.hpp>
 #include <results/refined_response.hpp>
 #include <run/progress.hpp>
+#include <steps/critical_margins.hpp>
 #include <steps/resonances.hpp>
 #include <steps/step_kinds.hpp>
 #include <steps/vibration_zones.hpp>
@@ -417,6 +418,58 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   return said;
 }
 
+/// Lightly damped critical speeds nearer to the operating range than their margin that no peak stands for (W17).
+void warn_of_unshown_criticals(results::FrequencyStep& s, const UnbalanceResponse& r,
+                               const std::vector<analysis::ResponseProbe>& probes,
+                               const std::vector<analysis::ResponsePeak>& peaks,
+                               const model::UnbalanceStep& law) {
+  const bool backwards = r.points.back().Omega <= 0.0;
+  if (!(law.operating[1] > 0) || backwards) return;
+  // no margin is wider
+  constexpr double below = 0.17, above = 0.27;
+  int unshown = 0;
+  std::string list;
+  for (std::size_t k = 0; k < r.orders.size(); ++k) {
+    CriticalMarginOptions o;
+    o.order = r.orders[k];
+    o.range = {law.operating[0], law.operating[1]};
+    o.threads = s.job.options.jobs;
+    for (const analysis::MarginRow& m : analysis::separation_margins(peaks, probes, o.range, k))
+      if (!m.critically_damped) o.peaks.push_back(m.speed);
+    o.min_speed = (1.0 - below) * law.operating[0];
+    o.max_speed = (1.0 + above) * law.operating[1];
+    std::vector<CriticalMargin> found;
+    try {
+      found = critical_margins(s.linear, o);
+    } catch (const Error&) {  // beyond the speeds that its supports are known at
+      o.min_speed = std::max(o.min_speed, r.points.front().Omega);
+      o.max_speed = std::min(o.max_speed, r.points.back().Omega);
+      if (!(o.max_speed > o.min_speed)) continue;
+      found = critical_margins(s.linear, o);
+    }
+    for (const CriticalMargin& m : found) {
+      if (m.passed()) continue;
+      ++unshown;
+      list += fmt::format("{}{:.6g} rpm ({}, amplification {:.3g}: {:.1f} % of {:.1f} %)",
+                          list.empty() ? "" : ", ", to_rpm(m.critical.speed),
+                          results::direction_text(m.critical.mode), m.critical.amplification(),
+                          100 * m.actual, 100 * m.required);
+    }
+  }
+  s.summary()["critical speeds that no peak stands for"] = unshown;
+  if (unshown == 0) return;
+  Diagnostic d;
+  d.code = "W17";
+  d.message = fmt::format(
+      "step '{}': separation margins leave out {} critical speed{} that no peak of the response "
+      "from {:.6g} to "
+      "{:.6g} rpm stands for: {}",
+      s.step.name, unshown, unshown > 1 ? "s" : "", to_rpm(r.points.front().Omega),
+      to_rpm(r.points.back().Omega), list);
+  d.hint = "speeds beyond it, unbalance that drives it, a probe that sees it";
+  results::warn(s.job, std::move(d));
+}
+
 /// Shafts that turn against each other at one speed, both out of balance: what they do together
 /// depends on where they meet, which the phases of the deck say.
 void say_opposed_unbalances(results::FrequencyStep& s) {
@@ -533,16 +586,13 @@ UnbalanceResponse with_peaks(const UnbalanceResponse& r,
   return out;
 }
 
-/// The operating speeds and their middle, both ends and the middle of the range, and the highest
-/// response.
-std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Largest& response,
-                                    const std::vector<double>& operating) {
-  constexpr int parts = 2;
-  std::vector<double> out = operating;
+/// Those of the response, the operating speeds and their middle, and the highest response.
+std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds,
+                                    const Largest& response, const std::vector<double>& operating) {
+  std::vector<double> out = results::speeds_to_judge(job, speeds);
+  out.insert(out.end(), operating.begin(), operating.end());
   if (operating.size() > 1) out.push_back(0.5 * (operating[0] + operating[1]));
   if (response.amplitude > 0) out.push_back(response.speed);
-  for (int k = 0; k <= parts; ++k)
-    out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
   return out;
 }
 
@@ -638,12 +688,14 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   if (o.speeds.back() <= 0)
     for (double& x : operating)
       x = -std::abs(x);
-  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, operating));
+  results::warn_of_growth(s,
+                          speeds_to_judge(job, results::speeds_of(law.speed), largest, operating));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, shown, o.outputs), false);
   s.add_table("peaks", std::move(found));
   const std::string margins = add_margins(s, r, shown, peaks, law);
+  warn_of_unshown_criticals(s, r, shown, peaks, law);
   add_probe_figures(s, r, shown, peaks);
   const std::string twice = add_multiples(s, r, shown, o.multiples, o.breathes);
   add_force_figure(s, r, o.outputs);

@@ -9,6 +9,12 @@ namespace {
 constexpr double damped_below = 2.5;
 }
 
+double margin_of(double speed, const OperatingRange& range) {
+  if (speed > range.max) return (speed - range.max) / range.max;
+  if (speed < range.min) return (range.min - speed) / range.min;
+  return -std::min(speed - range.min, range.max - speed) / speed;
+}
+
 double required_margin(double amplification, bool above) {
   if (!(amplification >= damped_below)) return 0.0;
   const double sm = 0.17 * (1.0 - 1.0 / (amplification - 1.5));
@@ -34,9 +40,7 @@ std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks
     const double speed = std::abs(p.speed);
     const bool above = speed > range.max;
     r.required = required_margin(r.amplification_bound, above);
-    r.actual = above               ? (speed - range.max) / range.max
-               : speed < range.min ? (range.min - speed) / range.min
-                                   : -std::min(speed - range.min, range.max - speed) / speed;
+    r.actual = margin_of(speed, range);
     r.passed = r.critically_damped || r.actual >= r.required;
     r.undetermined = !r.passed && std::isnan(r.amplification);
     rows.push_back(r);

@@ -31,6 +31,8 @@ struct MarginRow {
   bool passed = true;
 };
 
+/// Distance of a speed from the range as a fraction of its nearer end; inside, less than zero, of the speed.
+double margin_of(double speed, const OperatingRange& range);
 /// Required margin as a fraction.
 double required_margin(double amplification, bool above);
 

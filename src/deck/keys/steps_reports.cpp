@@ -431,7 +431,8 @@ void describe(Visitor& v, model::ApiEvent& e) {
 void describe(Visitor& v, model::ApiTorsionalStep& s) {
   v.text("standard", s.standard, "name of the standard in the tables");
   describe_operating(v, s.operating);
-  v.integer("modes", s.modes, between(1, 10000), "torsional modes, from the lowest frequency");
+  v.integer("modes", s.modes, between(1, 10000),
+            "torsional modes, from the lowest frequency; more where an excitation comes near them");
   v.quantities("multiples", s.multiples, "", positive, -1,
                "multiples of the speed of each shaft that the modes keep away from");
   v.quantities(optional("orders", "none"), s.orders, "", positive, -1,

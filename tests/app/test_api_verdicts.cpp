@@ -1,0 +1,176 @@
+// What an API report passes: nothing that grows, no critical speed that its unbalances do not drive, no
+// torsional mode that is not among those asked for.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+using whirl::test::DeckRun;
+
+namespace {
+
+/// 116 kg between two bearings 880 mm apart, all of their coefficients given.
+std::string machine(const std::string& bearings, const std::string& parts) {
+  return R"(format = 1
+[output]
+report = false
+[shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["e1", 100, 80], ["j1", 80, 90], ["a", 400, 110], ["b", 400, 110], ["j2", 80, 90], ["e2", 100, 80]]
+[[disk]]
+name = "w"
+at = "a:end"
+mass = "40 kg"
+Ip = "0.8 kg.m^2"
+Id = "0.5 kg.m^2"
+[[bearing]]
+name = "DE"
+at = "j1:mid"
+)" + bearings +
+         R"([[bearing]]
+name = "NDE"
+at = "j2:mid"
+)" + bearings +
+         R"([[bearing]]
+name = "thrust"
+at = "e1:start"
+type = "linear"
+kxx = "1e8 N/m"
+cxx = "1e4 N.s/m"
+[[probe]]
+name = "p1"
+at = "j1:end"
+[[probe]]
+name = "p2"
+at = "j2:start"
+)" + parts;
+}
+
+std::string linear(const std::string& kyy, const std::string& kzz, const std::string& cyy,
+                   const std::string& czz) {
+  return fmt::format(
+      "type = \"linear\"\nkyy = \"{} N/m\"\nkzz = \"{} N/m\"\ncyy = \"{} N.s/m\"\nczz = \"{} "
+      "N.s/m\"\n",
+      kyy, kzz, cyy, czz);
+}
+
+std::string seal(const std::string& name, const std::string& at, const std::string& k) {
+  return fmt::format(
+      "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ntype = \"linear\"\nkyz = \"{} N/m\"\nkzy = \"-{} "
+      "N/m\"\n",
+      name, at, k, k);
+}
+
+std::string api(const std::string& speeds, const std::string& more = "") {
+  return "[[step]]\nname = \"api\"\ntype = \"api_lateral\"\noperating_speed = [" + speeds + "]\n" +
+         more;
+}
+
+const std::string stage = R"([step.stages]
+columns = ["name", "power[kW]", "diameter[mm]", "width[mm]", "suction_density[kg/m^3]", "discharge_density[kg/m^3]"]
+rows = [["w", 200, 380, 22, 14.0, 16.4]]
+)";
+
+/// What the table says of a check: passed, FAILED, for information; "": it is not there.
+std::string result_of(const DeckRun& r, const std::string& check) {
+  const whirl::io::Value summary = r.summary("api");
+  for (const whirl::io::Value& c : summary.at("compliance").items())
+    if (c.at("check").text() == check) return c.at("result").text();
+  return "";
+}
+
+}  // namespace
+
+// The unbalance goes to modes on the mean of the stiffnesses in both directions. On bearings a hundred times
+// softer along y the conical motion along y, 2 k a^2/Id = 5300 rpm by hand, is none of them, and stands in
+// the middle of the operating range with an amplification of 27.
+TEST(ApiVerdicts, ACriticalSpeedThatNoUnbalanceDrivesIsFound) {
+  const DeckRun r(machine(linear("6e6", "6e8", "4e2", "2e5"), api("\"5100 rpm\", \"5500 rpm\"")));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "margin of a critical speed"), "FAILED") << r.log;
+  EXPECT_TRUE(r.says("5298.1 rpm")) << r.log;
+  EXPECT_EQ(r.summary("api").at("failed").number(), 1);
+}
+
+// With pedestals as soft no undamped mode lies below the last speed at all: an empty table is no pass.
+TEST(ApiVerdicts, NoModeToPlaceUnbalanceForIsNoPass) {
+  const std::string pedestal =
+      "support = { mass = \"10 kg\", kyy = \"6.06e6 N/m\", kzz = \"1e10 N/m\", cyy = \"400 "
+      "N.s/m\", czz = "
+      "\"400 N.s/m\" }\n";
+  const DeckRun r(
+      machine(linear("6e8", "6e8", "2e5", "2e5") + pedestal, api("\"4200 rpm\", \"4500 rpm\"")));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "margin of a critical speed"), "FAILED") << r.log;
+  EXPECT_TRUE(r.says("4321")) << r.log;
+}
+
+// A seal that drives backward whirl is no better than one that drives forward whirl.
+TEST(ApiVerdicts, GrowthFailsWhateverWayItWhirls) {
+  for (const char* k : {"3e7", "-3e7"}) {
+    const std::string sign = std::string(k).starts_with('-') ? k + 1 : k;
+    const std::string across = k[0] == '-'
+                                   ? "kyz = \"-" + sign + " N/m\"\nkzy = \"" + sign + " N/m\"\n"
+                                   : "kyz = \"" + sign + " N/m\"\nkzy = \"-" + sign + " N/m\"\n";
+    const DeckRun r(machine(linear("3e7", "3e7", "2e4", "2e4"),
+                            "[[bearing]]\nname = \"seal\"\nat = \"a:mid\"\ntype = \"linear\"\n" +
+                                across +
+                                api("\"7000 rpm\", \"9000 rpm\"", "seals = [\"seal\"]\n" + stage)));
+    ASSERT_EQ(r.exit, 0) << r.log;
+    EXPECT_EQ(result_of(r, "level 2: log decrement"), "FAILED") << k << "\n" << r.log;
+  }
+}
+
+// Two seals against each other make one forward motion above the speed well damped and the other one grow.
+TEST(ApiVerdicts, GrowthFailsWhateverItsNumber) {
+  const DeckRun r(
+      machine(linear("3e7", "3e7", "4e3", "4e3"),
+              seal("seal", "a:mid", "2.5e8") +
+                  "[[bearing]]\nname = \"seal2\"\nat = \"b:mid\"\ntype = \"linear\"\nkyz = "
+                  "\"-2.5e8 N/m\"\nkzy = \"2.5e8 N/m\"\n" +
+                  api("\"7000 rpm\", \"9000 rpm\"", "seals = [\"seal\", \"seal2\"]\n" + stage)));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "level 2: log decrement"), "FAILED") << r.log;
+}
+
+// Without stages there is no level 1, and the machine is judged as it is given.
+TEST(ApiVerdicts, StabilityIsJudgedWithoutStages) {
+  const DeckRun sealed(machine(
+      linear("3e7", "3e7", "2e4", "2e4"),
+      seal("seal", "a:mid", "3e7") + api("\"7000 rpm\", \"9000 rpm\"", "seals = [\"seal\"]\n")));
+  ASSERT_EQ(sealed.exit, 0) << sealed.log;
+  EXPECT_EQ(result_of(sealed, "level 2: log decrement"), "FAILED") << sealed.log;
+  const DeckRun bare(machine(linear("3e7", "3e7", "2e4", "2e4"),
+                             seal("rotor", "a:mid", "3e7") + api("\"7000 rpm\", \"9000 rpm\"")));
+  EXPECT_EQ(result_of(bare, "log decrement"), "FAILED") << bare.log;
+  const DeckRun sound(
+      machine(linear("3e7", "3e7", "2e4", "2e4"), api("\"7000 rpm\", \"9000 rpm\"")));
+  EXPECT_EQ(result_of(sound, "log decrement"), "passed") << sound.log;
+}
+
+// Nine discs: the order 8.7 meets the eighth mode, six are asked for by default.
+TEST(ApiVerdicts, TorsionalModesAreJudgedAsFarAsExcitationsReach) {
+  std::string rows, disks;
+  for (int k = 0; k < 9; ++k) {
+    rows += fmt::format("{}[\"s{}\", 150, 60]", k ? ", " : "", k);
+    disks += fmt::format(
+        "[[disk]]\nname = \"d{}\"\nat = \"s{}:start\"\nmass = \"20 kg\"\nIp = \"{:.2f} kg.m^2\"\n",
+        k, k, 0.30 + 0.02 * k);
+  }
+  const std::string deck =
+      "format = 1\n[output]\nreport = false\n[shaft]\nname = \"R\"\nmaterial = "
+      "\"steel\"\ncolumns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [" +
+      rows + "]\n" + disks +
+      "[[bearing]]\nat = \"s0:end\"\ntype = \"rigid\"\ndirections = [\"x\", \"y\", "
+      "\"z\"]\n[[bearing]]\nat = \"s8:end\"\ntype = \"rigid\"\ndirections = [\"y\", "
+      "\"z\"]\n[[step]]\nname = \"api\"\ntype = \"api_torsional\"\noperating_speed = "
+      "[\"2900 rpm\", \"3100 rpm\"]\norders = [8.7]\n";
+  const DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(r.summary("api").at("failed").number(), 2) << r.log;
+  const whirl::io::Value summary = r.summary("api");
+  const auto& modes = summary.at("frequencies [Hz]").items();
+  ASSERT_GE(modes.size(), 8u);
+  EXPECT_NEAR(modes[7].number(), 434.88, 0.05);
+}
