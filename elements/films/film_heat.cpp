@@ -53,6 +53,11 @@ class Band {
 enum Cause : Index { of_loss, of_journal, of_inlet, of_surroundings, causes };
 using Affine = Vector<causes>;
 
+/// Thickness of a pad for what goes through it, m.
+double wall_of(const HeatPad& pad, const HeatSettings& s) {
+  return std::isnan(s.wall) ? pad.thickness_at_pivot : s.wall;
+}
+
 /// The energy balance of one pad.
 class PadHeat {
  public:
@@ -63,7 +68,8 @@ class PadHeat {
         speed_(film_.radius * std::abs(pad.point.slip)),
         N_(static_cast<Index>(s.cells)),
         J_(static_cast<Index>(s.layers)),
-        M_(s.wall > 0.0 ? static_cast<Index>(s.wall_layers) : 0),
+        wall_(wall_of(pad, s)),
+        M_(wall_ > 0.0 ? static_cast<Index>(s.wall_layers) : 0),
         field_(sample_film(film_, pad.pad, pad.point, s.cells + 1)),
         edge_(J_ + 1),
         x_(MatX::Zero(N_ * (M_ + J_), causes)) {
@@ -172,7 +178,9 @@ class PadHeat {
   const HeatSettings& s_;
   bool forward_;
   double speed_, dx_ = 0;
-  Index N_, J_, M_;
+  Index N_, J_;
+  double wall_;
+  Index M_;
   FilmField field_;
   VecX edge_;
   MatX x_;                  ///< right sides, then temperatures: a column a cause
@@ -258,7 +266,7 @@ void PadHeat::add_loss(Index i) {
 }
 
 void PadHeat::add_wall(Band& a) {
-  const double t = s_.wall / static_cast<double>(M_), L = film_.length, k = s_.wall_conductivity;
+  const double t = wall_ / static_cast<double>(M_), L = film_.length, k = s_.wall_conductivity;
   const double across = k * L * dx_ / t, along = k * L * t / dx_;
   const auto lose = [&](Index p, double area, double half) {
     const double by = 1.0 / (1.0 / (s_.back_coefficient * area) + half);
@@ -286,7 +294,7 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
   out.film_coldest = infinity;
   out.hottest = out.film_hottest = -infinity;
   const double across =
-      M_ > 0 ? s_.wall_conductivity * film_.length * dx_ * static_cast<double>(M_) / s_.wall : 0.0;
+      M_ > 0 ? s_.wall_conductivity * film_.length * dx_ * static_cast<double>(M_) / wall_ : 0.0;
   double mean = 0.0, lean = 0.0;
   for (Index i = 0; i < N_; ++i) {
     double film = 0.0, fluidity = 0.0;
@@ -383,7 +391,8 @@ void find_growth(HeatBalance& b, std::span<const HeatPad> pads, const HeatSettin
       const double pad = s.pad_expansion * (b.pads[k].pad - from);
       assembled = (R + t) * s.housing_expansion * (housing - from) - t * pad - shaft;
       own = R * pad - shaft;
-      if (s.wall > 0.0) own += R * R * s.pad_expansion * b.pads[k].through / s.wall;
+      const double wall = wall_of(pads[k], s);
+      if (wall > 0.0) own += R * R * s.pad_expansion * b.pads[k].through / wall;
     }
     b.growth.push_back(assembled / clearance);
     b.pad_growth.push_back(own / clearance);

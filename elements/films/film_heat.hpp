@@ -48,7 +48,7 @@ struct HeatSettings {
   double density = 900, specific_heat = 1950, conductivity = 0.14;  ///< SI, of the oil
   double supply_temperature = 0;                                    ///< K
   double carry_over = 0.75;          ///< s, hot oil in what enters a pad
-  double wall = 0;                   ///< t, m; 0: nothing goes through the pads
+  double wall = 0;                   ///< t, m; 0: nothing goes through the pads; NaN: t_a of each
   double wall_conductivity = 50;     ///< W/(m K)
   double back_coefficient = 100;     ///< W/(m2 K)
   double housing_temperature = nan;  ///< of the oil about the pads, K; NaN: that which enters each

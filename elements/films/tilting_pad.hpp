@@ -157,10 +157,9 @@ extern template struct TiltingPadJoint<true, true>;
 
 /// Linearised pads of one bearing: force on the shaft and on the pads' own unknowns for motions in
 /// the order (y, z, tilt 1, [pressed 1,] tilt 2, ...): K x + C x' + M x'' on the left side. N, N m;
-/// m, rad; s.
+/// m, rad; s. Pads on rigid pivots have no compression.
 struct PadCoefficients {
   MatX K, C, M;
-  int own = 1;  ///< unknowns a pad
 };
 /// What the shaft sees at the frequency w, rad/s, with the pads following: Z(w) = K + i w C of 2x2.
 struct ReducedCoefficients {

@@ -143,7 +143,10 @@ class Schema {
 
   Value value_of(const KeyInfo& k, const std::string& path) {
     switch (k.kind) {
-      case KeyInfo::Kind::quantity: return quantity(k.unit, k.range, k.plain_zero);
+      case KeyInfo::Kind::quantity: {
+        Value one = quantity(k.unit, k.range, k.plain_zero);
+        return k.each ? any_of({one, list_of(one)}) : one;
+      }
       case KeyInfo::Kind::integer: {
         Value v = type("integer");
         if (std::isfinite(k.range.min)) v["minimum"] = k.range.min;

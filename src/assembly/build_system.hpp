@@ -60,9 +60,10 @@ struct SupportCondition {
 
 /// The pads of a tilting-pad bearing.
 struct TiltingPads {
-  std::size_t bearing = 0;                   ///< of the model
-  std::vector<double> pivots;                ///< rad, one a pad
-  std::vector<std::vector<Index>> unknowns;  ///< scalar nodes of each pad: tilt, pressed
+  std::size_t bearing = 0;     ///< of the model
+  std::vector<double> pivots;  ///< rad, one a pad
+  std::vector<std::vector<Index>>
+      unknowns;  ///< scalar nodes of each pad: tilt, pressed if it gives
   std::function<std::vector<elements::PadStanding>(const NodeAt&)> standing;
   /// The face of a pad as it stands, for pictures.
   struct Face {

@@ -30,6 +30,15 @@ void set_contact(elements::TiltingPad& pad, const model::TiltingPadJournal::Cont
   pad.pivot_stiffness = elements::hertz_point_stiffness(radius, radius, material, material);
 }
 
+/// How a pad gives along its pivot; a rigid one does not.
+void set_pivot(elements::TiltingPad& pad, const model::TiltingPadJournal::Pad& p, double length) {
+  if (p.rigid_pivot()) return;
+  pad.mass = p.mass;
+  pad.pivot_damping = p.pivot_damping;
+  pad.pivot_stiffness = p.pivot_stiffness;
+  if (p.contact) set_contact(pad, *p.contact, length);
+}
+
 }  // namespace
 
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
@@ -44,24 +53,21 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
     g.radius = 0.5 * law.diameter;
     g.length = law.length;
     g.viscosity = viscosity_of(law.oil);
-    g.clearance = law.clearance;
+    g.clearance = p.clearance;
     g.preload = p.preload;
     g.pivot = p.pivot;
     g.arc = p.arc;
     g.offset = p.offset;
-    g.thickness = law.thickness;
+    g.thickness = p.thickness;
     const int points = static_cast<int>(std::lround(grid.points * p.arc / arcs));
     g.points = std::min(points, elements::JournalSurface::max_nodes);
     elements::TiltingPad pad = elements::make_tilting_pad(g);
     set_flow(pad.film, law.flow, law.oil);
     if (grid.uniform) make_uniform(pad.film);
     if (grid.rows > 0) put_on_grid(pad.film, {points, grid.rows}, no_recesses);
-    pad.tilt_stiffness += law.tilt_stiffness;
-    pad.inertia = law.inertia;
-    pad.mass = law.mass;
-    pad.pivot_stiffness = law.pivot_stiffness;
-    if (law.contact) set_contact(pad, *law.contact, law.length);
-    pad.pivot_damping = law.pivot_damping;
+    pad.tilt_stiffness += p.tilt_stiffness;
+    pad.inertia = p.inertia;
+    set_pivot(pad, p, law.length);
     out.push_back(std::move(pad));
   }
   return out;
@@ -69,16 +75,17 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
 
 namespace {
 
-/// The pads of a bearing with the nodes they stand between.
+/// The pads of a bearing with the nodes they stand between. Pressed: one of the pivots gives; the
+/// compression of those beside it that are rigid is held.
 template <bool Pressed, bool Offsets>
 class PadRing {
  public:
   using Kernel = elements::TiltingPadJoint<Pressed, Offsets>;
-  static constexpr Index own = Kernel::own;
 
   PadRing(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
           const model::TiltingPadJournal& law)
       : law_(law),
+        given_(law.pads()),
         offset_{n.shaft.offset, n.other.offset},
         ends_{n.shaft.node, n.other.node},
         pads_(make_tilting_pads(law, own_grid(law))) {
@@ -89,7 +96,10 @@ class PadRing {
             {Vec3::Zero(), line, fmt::format("{} of pad {} of {}", what, k + 1, name_of(b)), true});
       };
       std::vector<Index> unknowns{add("tilt")};
-      if constexpr (Pressed) unknowns.push_back(add("pivot"));
+      if constexpr (Pressed) {
+        unknowns.push_back(add("pivot"));
+        if (given_[k].rigid_pivot()) a.builder.hold(unknowns.back(), 0);
+      }
       unknowns_.push_back(std::move(unknowns));
     }
   }
@@ -102,6 +112,13 @@ class PadRing {
   std::size_t pads() const { return pads_.size(); }
   const std::vector<elements::TiltingPad>& all_pads() const { return pads_; }
   const std::vector<std::vector<Index>>& unknowns() const { return unknowns_; }
+  /// Those of them that move.
+  std::vector<std::vector<Index>> moving() const {
+    std::vector<std::vector<Index>> out = unknowns_;
+    for (std::size_t k = 0; k < pads(); ++k)
+      out[k].resize(moves(k));
+    return out;
+  }
   Kernel kernel(std::size_t k) const {
     Kernel out;
     out.pad = pads_[k];
@@ -187,8 +204,8 @@ class PadRing {
       elements::LateralMotion still = m.journal;
       still.v.setZero();
       const elements::LateralMotion seen = pad.seen(still, m.q, Vec2::Zero());
-      out.push_back(
-          {&pad.film, 0, elements::FilmLaw<elements::FiniteJournal>::point(seen), law_.thickness});
+      out.push_back({&pad.film, 0, elements::FilmLaw<elements::FiniteJournal>::point(seen),
+                     given_[k].thickness});
     }
     return out;
   }
@@ -196,9 +213,11 @@ class PadRing {
     std::vector<elements::TiltingPad> finer =
         grid.points > 0 ? make_tilting_pads(law_, grid) : pads_;
     place_kept(finer);
-    const Index n = 2 + own * static_cast<Index>(pads());
-    elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n),
-                                  static_cast<int>(own)};
+    Index n = 2;
+    for (std::size_t k = 0; k < pads(); ++k)
+      n += static_cast<Index>(moves(k));
+    elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n)};
+    Index next = 2;
     for (std::size_t k = 0; k < pads(); ++k) {
       Kernel joint = kernel(k);
       joint.pad = finer[k];
@@ -206,8 +225,8 @@ class PadRing {
       t.set_zero();
       joint.add_tangent(states(k, at), {}, t);
       std::vector<std::pair<Index, Index>> place{{0, 1}, {1, 2}};  // of the bearing, of the kernel
-      for (Index i = 0; i < own; ++i)
-        place.emplace_back(2 + own * static_cast<Index>(k) + i, 14 + 7 * i);
+      for (std::size_t i = 0; i < moves(k); ++i)
+        place.emplace_back(next++, 14 + 7 * static_cast<Index>(i));
       for (const auto& [row, from_row] : place)
         for (const auto& [column, from_column] : place) {
           out.K(row, column) += t.K(from_row, from_column);
@@ -220,12 +239,18 @@ class PadRing {
   elements::LateralMotion journal(const NodeAt& at) const {
     return kernel(0).motion_of(states(0, at), {}).journal;
   }
-  /// The journal towards the pivot that it is nearest to, m.
-  double reach(const NodeAt& at) const {
-    double out = -infinity;
+  /// What of the smallest clearance is used, m, at the pivot of the pad where least of a clearance is
+  /// left, and by how much that pad's own clearance is larger, m.
+  struct Reach {
+    double used = -infinity, wider = 0;
+  };
+  Reach reach(const NodeAt& at) const {
+    Reach out;
     for (std::size_t k = 0; k < pads(); ++k) {
       const auto m = kernel(k).motion_of(states(k, at), {});
-      out = std::max(out, m.journal.r.dot(pads_[k].pivot) - m.q.y());
+      const double wider = given_[k].clearance - law_.clearance;
+      const double used = m.journal.r.dot(pads_[k].pivot) - m.q.y() - wider;
+      if (used > out.used) out = {used, wider};
     }
     return out;
   }
@@ -257,7 +282,11 @@ class PadRing {
     }
   }
 
+  /// Of the unknowns of a pad.
+  std::size_t moves(std::size_t k) const { return Pressed && !given_[k].rigid_pivot() ? 2 : 1; }
+
   model::TiltingPadJournal law_;
+  std::vector<model::TiltingPadJournal::Pad> given_;
   std::ptrdiff_t kept_from_ = -1;
   std::array<double, 2> offset_;
   Pair ends_;
@@ -314,7 +343,7 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   pads.bearing = number_of(a, b);
   for (const auto& p : law.pads())
     pads.pivots.push_back(p.pivot);
-  pads.unknowns = ring->unknowns();
+  pads.unknowns = ring->moving();
   pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };
   pads.faces = [ring](const NodeAt& at) { return ring->faces(at); };
   pads.other_loads = [ring](const NodeAt& at) { return ring->other_loads(at); };
@@ -329,7 +358,7 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   condition.name = b.name;
   condition.where = b.where;
   condition.sommerfeld = 2.0 * viscosity_of(law.oil) * law.length * R * slender * slender;
-  condition.reach = [ring](const NodeAt& at) { return ring->reach(at); };
+  condition.reach = [ring](const NodeAt& at) { return ring->reach(at).used; };
   std::vector<double> offsets;
   for (const auto& p : law.pads())
     offsets.push_back(p.offset);
@@ -341,7 +370,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     SupportCondition::State s;
     s.film = true;
     s.gap = clearance;
-    s.displacement = std::max(0.0, ring->reach(at));
+    const auto reach = ring->reach(at);
+    s.displacement = std::max(0.0, reach.used);
     // at its trailing edge a pad is closer than at its pivot
     for (const auto& p : now)
       if (p.film < (1.0 - SupportCondition::believed) * s.gap)
@@ -357,7 +387,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
         0.8;  // of the gap: what it could carry is of interest, and found slowly
     if (s.displacement > near * s.gap)
       s.capacity =
-          ring->capacity(ring->journal(at), SupportCondition::believed * s.gap / s.displacement);
+          ring->capacity(ring->journal(at), (SupportCondition::believed * s.gap + reach.wider) /
+                                                (s.displacement + reach.wider));
     return s;
   };
   a.built.conditions.push_back(std::move(condition));
@@ -372,7 +403,10 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       throw run_error("E26", "its pads stand in a housing that does not turn",
                       "between two turning shafts use type = \"journal\"");
     }
-    const bool at_nodes = n.shaft.offset == 0 && n.other.offset == 0, rigid = law.rigid_pivots();
+    const auto pads = law.pads();
+    const bool at_nodes = n.shaft.offset == 0 && n.other.offset == 0;
+    const bool rigid =
+        std::all_of(pads.begin(), pads.end(), [](const auto& pad) { return pad.rigid_pivot(); });
     if (rigid)
       at_nodes ? add_ring<false, false>(a, b, n, law) : add_ring<false, true>(a, b, n, law);
     else

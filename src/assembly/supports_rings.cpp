@@ -123,8 +123,7 @@ class RingOnNodes {
     for (Index k = 0; k < own; ++k)
       if (!(law_.pinned && k == 2)) from.push_back(14 + 7 * k);
     const Index n = static_cast<Index>(from.size());
-    elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n),
-                                  static_cast<int>(n - 2)};
+    elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n)};
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j < n; ++j) {
         const Index row = from[whirl::at(i)], column = from[whirl::at(j)];

@@ -88,6 +88,13 @@ bool Describer::quantities(const Key& k, std::vector<double>& target, const char
   return false;
 }
 
+bool Describer::one_or_each(const Key& k, double& all, std::vector<double>&, const char* unit,
+                            Range range, const char* doc) {
+  quantity(k, all, unit, range, doc);
+  tables_.back()->keys.back().each = true;
+  return false;
+}
+
 bool Describer::matrix(const Key& k, Matrix<6>&, const char* translation, const char* coupling,
                        const char* rotation, const char* doc) {
   KeyInfo& i = add(k, KeyInfo::Kind::matrix, doc);

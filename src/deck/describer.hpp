@@ -38,7 +38,8 @@ struct KeyInfo {
   std::string default_text;  ///< as written in a deck; empty when there is none
   std::string absent;        ///< what holds when left out, where the default does not say it
   Range range;
-  int count = -1;  ///< of lists of fixed length
+  int count = -1;     ///< of lists of fixed length
+  bool each = false;  ///< of a quantity: or a list of them, one for each of several things
   std::vector<Option> words;
   std::shared_ptr<TableInfo> table;  ///< of tables, lists of tables, and `either`
   struct Choice {

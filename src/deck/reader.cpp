@@ -309,6 +309,19 @@ bool Reader::quantities(const Key& k, std::vector<double>& target, const char* u
   return true;
 }
 
+bool Reader::one_or_each(const Key& k, double& all, std::vector<double>& each, const char* unit,
+                         Range range, const char* doc) {
+  const Member* m = scope().table->find(k.name);
+  const Value v = m ? expand(m->value, Parameters::Use::quantity) : Value();
+  if (!v.is_array()) {
+    note_shape(k, KeyShape::Kind::list);
+    return quantity(k, all, unit, range, doc);
+  }
+  note_shape(k, KeyShape::Kind::quantity, unit);
+  if (v.items.empty()) problem("E20", v.spot, fmt::format("'{}' is a list without values", k.name));
+  return quantities(k, each, unit, range, -1, doc, nullptr);
+}
+
 bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, const char* coupling,
                     const char* rotation, const char*) {
   note_shape(k, KeyShape::Kind::list);

@@ -11,7 +11,8 @@ namespace {
 
 std::string type_of(const KeyInfo& k) {
   switch (k.kind) {
-    case KeyInfo::Kind::quantity: return k.unit.empty() ? "number" : k.unit;
+    case KeyInfo::Kind::quantity:
+      return (k.unit.empty() ? "number" : k.unit) + (k.each ? ", or a list" : "");
     case KeyInfo::Kind::integer: return "integer";
     case KeyInfo::Kind::flag: return "true/false";
     case KeyInfo::Kind::text: return "text";

@@ -98,6 +98,10 @@ class Visitor {
   /// unit/per^k (polynomials).
   virtual bool quantities(const Key&, std::vector<double>& target, const char* unit, Range,
                           int count, const char* doc, const char* per = nullptr) = 0;
+  /// A quantity for all of several things alike, or a list of them, one for each: `each` is then what
+  /// was `all`. The length of the list is the caller's to check; an empty one is a mistake.
+  virtual bool one_or_each(const Key&, double& all, std::vector<double>& each, const char* unit,
+                           Range, const char* doc) = 0;
   /// 6x6 in the order (x, y, z, rx, ry, rz): units of the translational, coupling and rotational
   /// entries. A plain 0 needs no unit here.
   virtual bool matrix(const Key&, Matrix<6>& target, const char* translation, const char* coupling,

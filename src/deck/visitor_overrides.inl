@@ -7,6 +7,8 @@ bool text(const Key&, std::string&, const char*) override;
 bool texts(const Key&, std::vector<std::string>&, const char*) override;
 bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*,
                 const char* per) override;
+bool one_or_each(const Key&, double&, std::vector<double>&, const char* unit, Range,
+                 const char*) override;
 bool matrix(const Key&, Matrix<6>&, const char* translation, const char* coupling,
             const char* rotation, const char*) override;
 bool option(const Key&, int& index, std::span<const Option>, const char*) override;

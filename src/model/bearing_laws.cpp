@@ -200,10 +200,14 @@ SupportTraits traits(const ShortJournal&) { return traits_of_journal(); }
 SupportTraits traits(const FiniteJournal&) { return traits_of_journal(); }
 
 std::vector<TiltingPadJournal::Pad> TiltingPadJournal::pads() const {
-  if (!own.empty()) return own;
-  std::vector<Pad> out(static_cast<std::size_t>(count), like);
-  for (int k = 0; k < count; ++k)
-    out[static_cast<std::size_t>(k)].pivot = first + two_pi * k / count;
+  std::vector<Pad> out = own;
+  if (out.empty()) {
+    out.assign(static_cast<std::size_t>(count), like);
+    for (int k = 0; k < count; ++k)
+      out[static_cast<std::size_t>(k)].pivot = first + two_pi * k / count;
+  }
+  for (Pad& p : out)
+    if (p.clearance == 0) p.clearance = clearance;
   return out;
 }
 

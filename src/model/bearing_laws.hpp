@@ -85,8 +85,7 @@ struct FilmHeat {
   double specific_heat = 1950, conductivity = 0.14;  ///< of the oil, J/(kg K), W/(m K)
   enum class Feed { flooded, leading_edge } feed = Feed::flooded;
   double carry_over = 0.75;  ///< hot oil, from the pad before, in what enters a pad
-  /// Of the pads (tilting pads: at their pivots, where thickness of the bearing says nothing else),
-  /// m; 0: nothing goes through them.
+  /// Of the pads, m; 0: nothing goes through them. NaN, of tilting pads: as thick as each is.
   double wall = 0;
   double wall_conductivity = 50;     ///< W/(m K)
   double back_coefficient = 100;     ///< from the back and the ends of a pad to the oil, W/(m2 K)
@@ -140,23 +139,10 @@ SupportTraits traits(const FiniteJournal&);
 
 /// Journal bearing of pads that tilt about their pivots.
 struct TiltingPadJournal {
-  double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial, as assembled
+  double diameter = 0, length = 0;  ///< m
+  double clearance = 0;             ///< m; radial, as assembled: the smallest of its pads
   Oil oil;
   FilmFlow flow;
-  struct Pad {
-    double pivot = 0;     ///< rad; from +y towards +z
-    double arc = pi / 3;  ///< rad
-    double offset = 0.5;  ///< of the pivot from the start of the pad, in arcs
-    double preload = 0;   ///< 1 - (assembled clearance)/(clearance of the pad), in [0, 1)
-  };
-  int count = 5;           ///< equal pads, the first pivot at `first`, one like `like` each
-  double first = -pi / 2;  ///< rad
-  Pad like;
-  std::vector<Pad> own;  ///< each by itself: instead of the equal ones
-  double thickness = 0;  ///< of a pad at its pivot, m
-  double inertia = 0;    ///< of a pad about its pivot, kg m2; 0: it follows at once
-  double mass = 0;       ///< of a pad, kg, along an elastic pivot
-  double pivot_stiffness = 0, pivot_damping = 0;  ///< N/m, N s/m; stiffness 0: rigid, or a contact
   struct Contact {
     enum class Shape { ball, line } shape = Shape::ball;
     double radius = 0,
@@ -164,9 +150,25 @@ struct TiltingPadJournal {
     double length = 0;              ///< of a line, m; 0: that of the bearing
     double E = 210e9, nu = 0.3;     ///< of a ball and its seat, Pa
   };
-  std::optional<Contact> contact;  ///< pivots that stiffen with their load
-  bool rigid_pivots() const { return pivot_stiffness == 0 && !contact; }
-  double tilt_stiffness = 0;             ///< of a flexure, N m/rad
+  struct Pad {
+    double pivot = 0;      ///< rad; from +y towards +z
+    double arc = pi / 3;   ///< rad
+    double offset = 0.5;   ///< of the pivot from the start of the pad, in arcs
+    double preload = 0;    ///< 1 - (assembled clearance)/(clearance of the pad), in [0, 1)
+    double clearance = 0;  ///< m; of a centred journal at the pivot; 0: that of the bearing
+    double thickness = 0;  ///< at the pivot, m
+    double inertia = 0;    ///< about the pivot, kg m2; 0: it follows at once
+    double mass = 0;       ///< kg, along an elastic pivot
+    double pivot_stiffness = 0,
+           pivot_damping = 0;        ///< N/m, N s/m; stiffness 0: rigid, or a contact
+    std::optional<Contact> contact;  ///< a pivot that stiffens with its load
+    double tilt_stiffness = 0;       ///< of a flexure, N m/rad
+    bool rigid_pivot() const { return pivot_stiffness == 0 && !contact; }
+  };
+  int count = 5;           ///< equal pads, the first pivot at `first`, one like `like` each
+  double first = -pi / 2;  ///< rad
+  Pad like;
+  std::vector<Pad> own;                  ///< each by itself: instead of the equal ones
   std::vector<double> frequency_ratios;  ///< frequency over speed, of further coefficients
   int nodes = 72;                        ///< grid points round the circumference
   int rows = 0;  ///< of a grid along the axis too, over half the length; 0: one profile there

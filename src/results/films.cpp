@@ -39,7 +39,7 @@ void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
     film = h.film_hottest - zero_celsius;
     pad = h.pad - zero_celsius;
     journal = c.films->heat->journal - zero_celsius;
-    growth = c.films->heat->growth[k] * c.clearance;
+    growth = c.films->heat->growth[k] * c.films->clearances[k];
     to_pad = h.to_pad;
     to_journal = h.to_journal;
   }

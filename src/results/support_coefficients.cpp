@@ -238,6 +238,8 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
     PadResults p;
     p.spin = c.spin;
     p.pivots = ring.pivots;
+    for (const std::vector<Index>& unknowns : ring.unknowns)
+      p.gives.push_back(unknowns.size() > 1);
     p.pads = ring.standing(node);
     p.others = ring.other_loads(node);
     p.drawings = ring.faces(node);
@@ -290,13 +292,21 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
     if (film.heated) f.effective_temperature = film.temperature_of(f.viscosity);
     const auto flow = [&](const auto& law) {
       const double R = 0.5 * law.diameter;
+      const double widest = *std::max_element(f.clearances.begin(), f.clearances.end());
       f.laminar = law.flow.regime == model::FilmFlow::Regime::laminar;
-      f.reynolds = law.oil.density * R * std::abs(c.spin) * law.clearance / f.viscosity;
-      f.transition = 41.2 * std::sqrt(R / law.clearance);  // G. I. Taylor's vortices
+      f.reynolds = law.oil.density * R * std::abs(c.spin) * widest / f.viscosity;
+      f.transition = 41.2 * std::sqrt(R / widest);  // G. I. Taylor's vortices
     };
     const model::BearingLaw& law = job.model.bearings[bearing].law;
-    if (const auto* journal = std::get_if<model::FiniteJournal>(&law)) flow(*journal);
-    if (const auto* tilting = std::get_if<model::TiltingPadJournal>(&law)) flow(*tilting);
+    if (const auto* journal = std::get_if<model::FiniteJournal>(&law)) {
+      f.clearances.assign(f.pads.size(), journal->clearance);
+      flow(*journal);
+    }
+    if (const auto* tilting = std::get_if<model::TiltingPadJournal>(&law)) {
+      for (const auto& pad : tilting->pads())
+        f.clearances.push_back(pad.clearance);
+      flow(*tilting);
+    }
     c.films = std::move(f);
   }
 }

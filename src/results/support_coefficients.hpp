@@ -16,6 +16,7 @@ using PadDrawing = assembly::TiltingPads::Face;
 struct PadResults {
   double spin = 0;             ///< of the shaft, rad/s
   std::vector<double> pivots;  ///< rad
+  std::vector<bool> gives;     ///< of the pivots: they have a compression in `full`
   std::vector<elements::PadStanding> pads;
   std::vector<double> others;  ///< N: loads in another balance of the tilt, NaN: there is none
   std::vector<PadDrawing> drawings;
@@ -36,8 +37,9 @@ struct FilmResults {
   double face_error =
       nan;  ///< K: by how much the hottest faces differ on a finer grid of the balance
   double effective_temperature = nan;  ///< of the oil with the mean viscosity, K; NaN: no heat
+  std::vector<double> clearances;      ///< as assembled, one a pad, m
   double viscosity = 0;                ///< mean, Pa s
-  double reynolds = 0;                 ///< rho R |s| c/eta of the assembled clearance
+  double reynolds = 0;                 ///< rho R |s| c/eta of the largest of them
   double transition =
       0;  ///< Reynolds number from which on vortices and turbulence are to be expected
   bool laminar = true;  ///< as the deck has it

@@ -12,19 +12,22 @@ namespace {
 constexpr double pad_degrees = 180.0 / pi;
 
 /// "y", "z", "tilt 1", "pivot 1", ..
-std::string motion_name(Index i, int own) {
-  if (i < 2) return i == 0 ? "y" : "z";
-  const Index pad = (i - 2) / own + 1;
-  return fmt::format("{} {}", (i - 2) % own == 0 ? "tilt" : "pivot", pad);
+std::vector<std::string> motion_names(const PadResults& ring) {
+  std::vector<std::string> out{"y", "z"};
+  for (std::size_t k = 0; k < ring.pads.size(); ++k) {
+    out.push_back(fmt::format("tilt {}", k + 1));
+    if (ring.gives[k]) out.push_back(fmt::format("pivot {}", k + 1));
+  }
+  return out;
 }
 
 void add_full(io::Table& t, const SupportCoefficients& c) {
   const elements::PadCoefficients& f = c.pads->full;
+  const std::vector<std::string> names = motion_names(*c.pads);
   for (Index i = 0; i < f.K.rows(); ++i)
     for (Index j = 0; j < f.K.cols(); ++j) {
       if (f.K(i, j) == 0 && f.C(i, j) == 0 && f.M(i, j) == 0) continue;
-      t.add({c.name, to_rpm(c.spin), motion_name(i, f.own), motion_name(j, f.own), f.K(i, j),
-             f.C(i, j), f.M(i, j)});
+      t.add({c.name, to_rpm(c.spin), names[at(i)], names[at(j)], f.K(i, j), f.C(i, j), f.M(i, j)});
     }
 }
 

@@ -142,13 +142,18 @@ class ModelDump {
     flow(x.flow);
   }
   void law(const model::TiltingPadJournal& x) {
-    each("tilting",
-         std::array{x.diameter, x.length, x.clearance, x.thickness, x.inertia, x.mass,
-                    x.pivot_stiffness, x.pivot_damping, x.tilt_stiffness, double(x.nodes)});
+    each("tilting", std::array{x.diameter, x.length, x.clearance, double(x.nodes), double(x.rows)});
     oil(x.oil);
     flow(x.flow);
-    for (const auto& p : x.pads())
-      each("pad", std::array{p.pivot, p.arc, p.offset, p.preload});
+    for (const auto& p : x.pads()) {
+      each("pad",
+           std::array{p.pivot, p.arc, p.offset, p.preload, p.clearance, p.thickness, p.inertia,
+                      p.mass, p.pivot_stiffness, p.pivot_damping, p.tilt_stiffness});
+      if (p.contact)
+        each("contact",
+             std::array{double(p.contact->shape), p.contact->radius, p.contact->seat_radius,
+                        p.contact->length, p.contact->E, p.contact->nu});
+    }
     each("ratios", x.frequency_ratios);
   }
   void law(const model::FloatingRing& x) {

@@ -260,7 +260,7 @@ TEST(FloatingRing, ReducedCoefficientsTwoWays) {
   system::TangentX<Joint::size> t;
   t.set_zero();
   s.joint.add_tangent(s.nodes(), s.context, t);
-  PadCoefficients full{MatX::Zero(7, 7), MatX::Zero(7, 7), MatX::Zero(7, 7), 5};
+  PadCoefficients full{MatX::Zero(7, 7), MatX::Zero(7, 7), MatX::Zero(7, 7)};
   const std::array<Index, 7> from{1, 2, 14, 21, 28, 35, 42};
   for (Index i = 0; i < 7; ++i)
     for (Index j = 0; j < 7; ++j) {

@@ -66,7 +66,7 @@ void oil(Visitor& v, model::Oil& o) {
     v.error("E05", "iso_vg", "a grade needs 'temperature'", "temperature = \"50 degC\"");
 }
 
-void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting, double thickness) {
+void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting) {
   using Feed = model::FilmHeat::Feed;
   v.quantity(required("supply_temperature"), h.supply_temperature, "degC", any, "of the fresh oil");
   v.quantity("specific_heat", h.specific_heat, "J/(kg.K)", positive, "of the oil");
@@ -78,7 +78,7 @@ void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting, double thicknes
   if (h.feed == Feed::leading_edge) h.carry_over = 0.3;
   v.number(optional("carry_over", "by feed"), h.carry_over, Range{0, 1, false, true},
            "share of hot oil, from the pad before, in the oil that enters a pad");
-  if (tilting) h.wall = thickness;
+  if (tilting) h.wall = nan;
   v.quantity(tilting ? optional("wall", "the thickness of the pads") : Key("wall"), h.wall, "mm",
              not_negative,
              "thickness of the pads for the heat that goes through them; 0: none does");
@@ -105,7 +105,7 @@ void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting, double thicknes
 }
 
 /// Keys of what goes beyond isoviscous laminar oil at ambient pressure, and the oil's checks.
-void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, double thickness) {
+void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting) {
   const OilGiven given = oil_keys(v, o, true);
   v.choice("turbulence", f.regime,
            {{"laminar", "none"},
@@ -125,7 +125,7 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
   model::FilmHeat heat;
   const bool heated = v.table(
       optional("heat", "one viscosity everywhere"),
-      [&](Visitor& w) { describe_heat(w, heat, tilting, thickness); },
+      [&](Visitor& w) { describe_heat(w, heat, tilting); },
       "temperatures of film and pads, in balance with every equilibrium; a motion in time keeps "
       "those it begins with, or follows with time_constant");
   if (heated) f.heat = heat;
@@ -154,18 +154,27 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
 }
 
 template <class Film>
-void dimensions(Visitor& v, Film& b,
-                const char* clearance =
-                    "radial clearance as assembled (half the difference of diameters, of lobes "
-                    "where it is least)") {
+void diameter_and_length(Visitor& v, Film& b) {
   v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
   v.quantity(required("length"), b.length, "mm", positive, "axial length of the film");
-  v.quantity(required("clearance"), b.clearance, "um", positive, clearance);
-  if (v.clean() && b.clearance > 0.02 * b.diameter)
-    v.error("E14", "clearance",
-            fmt::format("the clearance {} is not small against the diameter {}: no film",
-                        units::display(b.clearance, "um"), units::display(b.diameter, "mm")),
-            "the radial clearance is usually about a thousandth of the radius");
+}
+
+void check_clearance(Visitor& v, const char* key, double clearance, double diameter) {
+  if (!v.clean() || clearance <= 0.02 * diameter) return;
+  v.error("E14", key,
+          fmt::format("the clearance {} is not small against the diameter {}: no film",
+                      units::display(clearance, "um"), units::display(diameter, "mm")),
+          "the radial clearance is usually about a thousandth of the radius");
+}
+
+template <class Film>
+void dimensions(Visitor& v, Film& b) {
+  diameter_and_length(v, b);
+  v.quantity(
+      required("clearance"), b.clearance, "um", positive,
+      "radial clearance as assembled (half the difference of diameters, of lobes where it is "
+      "least)");
+  check_clearance(v, "clearance", b.clearance, b.diameter);
 }
 
 }  // namespace
@@ -300,7 +309,7 @@ void film_grid(Visitor& v, Law& b, const char* without) {
 void describe(Visitor& v, model::FiniteJournal& b) {
   using Shape = model::FiniteJournal::Shape;
   dimensions(v, b);
-  flow_of_film(v, b.flow, b.oil, false, 0.0);
+  flow_of_film(v, b.flow, b.oil, false);
   const Alternative shapes[] = {
       {"plain", "a cylinder without grooves", [&](Visitor&) { b.shape = Shape::plain; }},
       {"two_grooves", "a cylinder with two axial grooves, opposite each other",
@@ -347,49 +356,12 @@ void describe(Visitor& v, model::FiniteJournal& b) {
             "shape = \"two_grooves\", or \"lobes\"");
 }
 
-void describe(Visitor& v, model::TiltingPadJournal::Pad& p) {
-  v.quantity(required("pivot"), p.pivot, "deg", any, "angle of the pivot, from y towards z");
-  v.quantity("arc", p.arc, "deg", Range{0, two_pi, true, true}, "of the pad");
-  v.number("offset", p.offset, fraction, "of the pivot from the start of the pad, in arcs");
-  v.number("preload", p.preload, Range{0, 1, false, true},
-           "1 - (assembled clearance)/(clearance of the pad)");
-}
-
 namespace {
 
-/// Pads that reach into each other.
-void check_pads(Visitor& v, const model::TiltingPadJournal& b) {
-  struct Stretch {
-    double from, to;
-    std::size_t number;
-  };
-  std::vector<Stretch> all;
-  for (const auto& p : b.pads()) {
-    const double from = p.pivot - p.offset * p.arc,
-                 begin = from - two_pi * std::floor(from / two_pi);
-    all.push_back({begin, begin + p.arc, all.size() + 1});
-  }
-  std::sort(all.begin(), all.end(),
-            [](const Stretch& x, const Stretch& y) { return x.from < y.from; });
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const bool last = k + 1 == all.size();
-    const Stretch& next = all[last ? 0 : k + 1];
-    const double begins = next.from + (last ? two_pi : 0.0);
-    if (all[k].to <= begins + 1e-9) continue;
-    v.error("E14", b.own.empty() ? "arc" : "pad",
-            fmt::format("pads {} and {} overlap by {}", all[k].number, next.number,
-                        units::display(all[k].to - begins, "deg")),
-            "smaller arcs, or fewer pads");
-    return;
-  }
-}
-
-}  // namespace
-
-namespace {
+using Pad = model::TiltingPadJournal::Pad;
 
 /// A ball or a line in its seat.
-void describe_contact(Visitor& v, model::TiltingPadJournal& b) {
+void describe_contact(Visitor& v, std::optional<model::TiltingPadJournal::Contact>& contact) {
   using Contact = model::TiltingPadJournal::Contact;
   Contact c;
   const Alternative shapes[] = {
@@ -414,41 +386,211 @@ void describe_contact(Visitor& v, model::TiltingPadJournal& b) {
   };
   v.alternatives(required("shape"), shapes, "what touches");
   if (!v.clean()) return;
-  b.contact = c;
+  contact = c;
+}
+
+/// What keeps a pivot that does not give.
+const char* const rigid_hint = "give pivot_stiffness or pivot_contact, or leave it out";
+
+}  // namespace
+
+void describe(Visitor& v, model::TiltingPadJournal::Pad& p) {
+  constexpr const char* without = "that of the bearing";
+  v.quantity(required("pivot"), p.pivot, "deg", any, "angle of the pivot, from y towards z");
+  v.quantity("arc", p.arc, "deg", Range{0, two_pi, true, true}, "of the pad");
+  v.number("offset", p.offset, fraction, "of the pivot from the start of the pad, in arcs");
+  v.number("preload", p.preload, Range{0, 1, false, true},
+           "1 - (assembled clearance)/(clearance of the pad)");
+  v.quantity(optional("clearance", without), p.clearance, "um", positive,
+             "radial, as assembled: of a centred journal at the pivot");
+  v.quantity(optional("thickness", without), p.thickness, "mm", not_negative,
+             "at the pivot, which is that far behind the film");
+  v.quantity(optional("inertia", without), p.inertia, "kg.m^2", not_negative,
+             "moment of inertia about the pivot; 0: the pad follows the film at once");
+  const bool mass = v.quantity(optional("mass", without), p.mass, "kg", not_negative,
+                               "for its motion along an elastic pivot");
+  const bool elastic = v.quantity(optional("pivot_stiffness", "the pivot of the bearing"),
+                                  p.pivot_stiffness, "N/m", positive, "of the pivot, radial");
+  std::optional<model::TiltingPadJournal::Contact> own;
+  const bool contact = v.table(
+      optional("pivot_contact", "the pivot of the bearing"),
+      [&](Visitor& w) { describe_contact(w, own); },
+      "an elastic pivot that stiffens with its load, instead of pivot_stiffness");
+  const bool damping = v.quantity(optional("pivot_damping", without), p.pivot_damping, "N.s/m",
+                                  not_negative, "of an elastic pivot");
+  v.quantity(optional("tilt_stiffness", without), p.tilt_stiffness, "N.m/rad", not_negative,
+             "of the pivot against tilting: a flexure");
+  if (elastic || contact) p.contact = own;
+  if (contact) p.pivot_stiffness = 0;
+  if (!v.clean()) return;
+  if (elastic && contact)
+    v.error("E26", "pivot_stiffness", "the pivot has a stiffness and a contact",
+            "keep one of the two");
+  else if (p.rigid_pivot() && ((mass && p.mass != 0) || (damping && p.pivot_damping != 0)))
+    v.error("E05", mass && p.mass != 0 ? "mass" : "pivot_damping", "a rigid pivot does not move",
+            rigid_hint);
+}
+
+namespace {
+
+/// Keys of a bearing that hold for all its pads, or are lists of one value for each.
+class PadKeys {
+ public:
+  PadKeys(Visitor& v, Pad& like) : v_(v), like_(like) {}
+
+  bool operator()(const Key& k, double Pad::*value, const char* unit, Range range,
+                  const char* doc) {
+    std::vector<double> each;
+    const bool given = v_.one_or_each(k, like_.*value, each, unit, range, doc);
+    if (each.empty()) return given;
+    like_.*value = *std::max_element(each.begin(), each.end());
+    lists_.push_back({k.name, value, std::move(each)});
+    return given;
+  }
+  bool lists() const { return !lists_.empty(); }
+  /// Pad k, from 0, but for what it says itself.
+  Pad pad(std::size_t k) const {
+    Pad out = like_;
+    for (const List& x : lists_)
+      if (k < x.each.size()) out.*x.value = x.each[k];
+    return out;
+  }
+  void check_lengths(std::size_t pads) const {
+    for (const List& x : lists_)
+      if (x.each.size() != pads)
+        v_.error("E20", x.key,
+                 fmt::format("'{}' has {} value{} for {} pad{}", x.key, x.each.size(),
+                             x.each.size() == 1 ? "" : "s", pads, pads == 1 ? "" : "s"),
+                 "one value for all pads, or a list of one for each");
+  }
+  /// A list that moves a pad on a rigid pivot.
+  void check_pivots(const std::vector<Pad>& pads) const {
+    for (const List& x : lists_)
+      for (std::size_t k = 0; k < pads.size(); ++k) {
+        const bool along = x.value == &Pad::mass || x.value == &Pad::pivot_damping;
+        if (!along || !pads[k].rigid_pivot() || pads[k].*x.value == 0) continue;
+        v_.error("E05", x.key, fmt::format("the pivot of pad {} is rigid and does not move", k + 1),
+                 rigid_hint);
+        return;
+      }
+  }
+
+ private:
+  struct List {
+    const char* key;
+    double Pad::*value;
+    std::vector<double> each;
+  };
+  Visitor& v_;
+  Pad& like_;
+  std::vector<List> lists_;
+};
+
+/// Pads that reach into each other.
+void check_overlap(Visitor& v, const std::vector<Pad>& pads) {
+  struct Stretch {
+    double from, to;
+    std::size_t number;
+  };
+  std::vector<Stretch> all;
+  for (const auto& p : pads) {
+    const double from = p.pivot - p.offset * p.arc,
+                 begin = from - two_pi * std::floor(from / two_pi);
+    all.push_back({begin, begin + p.arc, all.size() + 1});
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Stretch& x, const Stretch& y) { return x.from < y.from; });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool last = k + 1 == all.size();
+    const Stretch& next = all[last ? 0 : k + 1];
+    const double begins = next.from + (last ? two_pi : 0.0);
+    if (all[k].to <= begins + 1e-9) continue;
+    v.error("E14", v.given("pad") ? "pad" : "arc",
+            fmt::format("pads {} and {} overlap by {}", all[k].number, next.number,
+                        units::display(all[k].to - begins, "deg")),
+            "smaller arcs, or fewer pads");
+    return;
+  }
+}
+
+/// Mass and damper of pivots none of which gives.
+void check_rigid_pivots(Visitor& v, const model::TiltingPadJournal& b,
+                        const std::vector<Pad>& pads) {
+  const bool rigid =
+      std::all_of(pads.begin(), pads.end(), [](const Pad& p) { return p.rigid_pivot(); });
+  if (rigid && (b.like.mass != 0 || b.like.pivot_damping != 0))
+    v.error("E05", b.like.mass != 0 ? "mass" : "pivot_damping", "a rigid pivot does not move",
+            rigid_hint);
+}
+
+/// The pads of a bearing whose keys are read: by themselves where one differs.
+void settle_pads(Visitor& v, model::TiltingPadJournal& b, const PadKeys& keys) {
+  std::vector<Pad> pads = b.pads();
+  keys.check_lengths(pads.size());
+  if (!v.clean()) return;
+  if (b.own.empty() && keys.lists()) {
+    for (std::size_t k = 0; k < pads.size(); ++k) {
+      const double pivot = pads[k].pivot;
+      pads[k] = keys.pad(k);
+      pads[k].pivot = pivot;
+    }
+    b.own = pads;
+  }
+  b.clearance = infinity;
+  for (const Pad& p : pads) {
+    b.clearance = std::min(b.clearance, p.clearance);
+    check_clearance(v, v.given("pad") ? "pad" : "clearance", p.clearance, b.diameter);
+  }
+  if (v.clean()) check_rigid_pivots(v, b, pads);
+  if (v.clean()) keys.check_pivots(pads);
+  if (v.clean()) check_overlap(v, pads);
 }
 
 }  // namespace
 
 void describe(Visitor& v, model::TiltingPadJournal& b) {
-  dimensions(v, b, "radial clearance as assembled: of a centred journal at the pivots");
-  v.quantity("thickness", b.thickness, "mm", not_negative,
-             "of a pad at its pivot: the pivot is that far behind the film");
-  flow_of_film(v, b.flow, b.oil, true, b.thickness);
+  PadKeys each(v, b.like);
+  diameter_and_length(v, b);
+  each(required("clearance"), &Pad::clearance, "um", positive,
+       "radial clearance as assembled: of a centred journal at the pivots; ratios to the clearance "
+       "of "
+       "a bearing are to its smallest");
+  each("thickness", &Pad::thickness, "mm", not_negative,
+       "of a pad at its pivot: the pivot is that far behind the film");
+  flow_of_film(v, b.flow, b.oil, true);
   const bool count = v.integer(optional("pads", "5, or those listed"), b.count, between(1, 24),
                                "number of equal pads");
   const bool first = v.quantity(optional("first_pivot", "-90 deg"), b.first, "deg", any,
                                 "angle of the first pivot of equal pads, from y towards z: where "
                                 "the load points it is on a pad");
-  v.quantity("arc", b.like.arc, "deg", Range{0, two_pi, true, true}, "of a pad");
-  v.number("offset", b.like.offset, fraction,
-           "of the pivot from the start of its pad in arcs; 0.5: central, more: towards the end in "
-           "the sense of rotation y -> z");
-  v.number("preload", b.like.preload, Range{0, 1, false, true},
-           "1 - (assembled clearance)/(clearance of the pads)");
-  v.list(optional("pad", "equal pads"), Visitor::body_of(b.own, b.like),
-         "a pad by itself, instead of equal ones; what it leaves out is that of the bearing");
-  v.quantity("inertia", b.inertia, "kg.m^2", not_negative,
-             "moment of inertia of a pad about its pivot; 0: it follows the film at once");
-  v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
-  const bool elastic = v.quantity(optional("pivot_stiffness", "rigid pivots"), b.pivot_stiffness,
-                                  "N/m", positive, "of a pivot, radial");
+  each("arc", &Pad::arc, "deg", Range{0, two_pi, true, true}, "of a pad");
+  each("offset", &Pad::offset, "", fraction,
+       "of the pivot from the start of its pad in arcs; 0.5: central, more: towards the end in "
+       "the sense of rotation y -> z");
+  each("preload", &Pad::preload, "", Range{0, 1, false, true},
+       "1 - (assembled clearance)/(clearance of the pads)");
+  each("inertia", &Pad::inertia, "kg.m^2", not_negative,
+       "moment of inertia of a pad about its pivot; 0: it follows the film at once");
+  each("mass", &Pad::mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
+  const bool elastic = each(optional("pivot_stiffness", "rigid pivots"), &Pad::pivot_stiffness,
+                            "N/m", positive, "of a pivot, radial");
   const bool contact = v.table(
       optional("pivot_contact", "pivots as pivot_stiffness says"),
-      [&](Visitor& w) { describe_contact(w, b); },
+      [&](Visitor& w) { describe_contact(w, b.like.contact); },
       "elastic pivots that stiffen with their load, instead of pivot_stiffness");
-  v.quantity("pivot_damping", b.pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
-  v.quantity("tilt_stiffness", b.tilt_stiffness, "N.m/rad", not_negative,
-             "of a pivot against tilting: a flexure");
+  each("pivot_damping", &Pad::pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
+  each("tilt_stiffness", &Pad::tilt_stiffness, "N.m/rad", not_negative,
+       "of a pivot against tilting: a flexure");
+  v.list(optional("pad", "equal pads"),
+         {[&](Visitor& w) {
+            b.own.push_back(each.pad(b.own.size()));
+            describe(w, b.own.back());
+          },
+          [&](Visitor& w) {
+            Pad p = b.like;
+            describe(w, p);
+          }},
+         "a pad by itself, instead of equal ones; what it leaves out is that of the bearing");
   v.quantities(beside_motion("frequency_ratios"), b.frequency_ratios, "", not_negative, -1,
                "frequencies over the speed at which reduced coefficients are written beside the "
                "synchronous ones");
@@ -460,11 +602,8 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
   else if (elastic && contact)
     v.error("E26", "pivot_stiffness", "the pivots have a stiffness and a contact",
             "keep one of the two");
-  else if (!elastic && !contact && (b.mass != 0 || b.pivot_damping != 0))
-    v.error("E05", b.mass != 0 ? "mass" : "pivot_damping", "a rigid pivot does not move",
-            "give pivot_stiffness or pivot_contact, or leave it out");
   else
-    check_pads(v, b);
+    settle_pads(v, b, each);
 }
 
 void describe(Visitor& v, model::SqueezeFilm& b) {
