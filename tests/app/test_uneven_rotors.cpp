@@ -430,3 +430,48 @@ speed = {{ start = "500 rpm", stop = "4000 rpm", points = {} }}
     EXPECT_NEAR(found[k], floquet[k], 1.0);
   }
 }
+
+// A controller's integral is held by no stiffness: the count of negative ones ended in a search without end.
+TEST(UnevenRotors, StandInMagneticBearingsWithAnIntegrator) {
+  const auto bearing = [](const std::string& name, const std::string& place) {
+    return "[[bearing]]\nname = \"" + name + "\"\nat = \"" + place + R"pid("
+type = "magnetic"
+angle = "45 deg"
+current_stiffness = "200 N/A"
+position_stiffness = "8e5 N/m"
+amplifier_bandwidth = "1.8 kHz"
+[[bearing.control]]
+type = "pid"
+p = "1.2e4 A/m"
+i = "4e4 A/(m.s)"
+d = "20 A.s/m"
+lag = "0.4 ms"
+)pid";
+  };
+  const DeckRun r("format = 1\n" + no_report +
+                  "[model]\ngravity = \"0 m/s^2\"\n[model.mesh]\nmin_elements_per_section = 1\n" +
+                  R"([shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 100, 50], ["b", 400, 55], ["c", 100, 50]]
+[[disk]]
+name = "w"
+at = "b:mid"
+mass = "15 kg"
+inertia = ["0.15 kg.m^2", "0.08 kg.m^2", "0.09 kg.m^2", "0 kg.m^2", "0 kg.m^2", "0 kg.m^2"]
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+)" + bearing("A", "a:end") +
+                  bearing("B", "b:end") + R"([[step]]
+name = "s"
+type = "stability"
+speed = { values = ["2000 rpm", "2500 rpm"] }
+)");
+  EXPECT_EQ(r.exit, 0) << r.log;
+  EXPECT_TRUE(r.says("certified at")) << r.log;
+}

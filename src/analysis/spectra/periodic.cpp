@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace whirl::analysis {
@@ -517,10 +518,18 @@ Index RotatingAxes::negative_stiffnesses(double Omega) {
       turned_.K.data()[i] = 0.5 * (turned_.K.data()[i] + one.K.data()[i]);
   }
   take_conservative_part(turned_, symmetric);
-  la::BlockLu<double> lu(linear_.system().pattern(), motion_.active());
-  if (lu.factor(symmetric, 0.0, 0.0, 1.0) != la::Status::ok)
-    return negative_stiffnesses(Omega * (1 + 1e-12));
-  return lu.negative_eigenvalues();
+  // What no stiffness holds at all (states of a controller) counts as held, by a little.
+  const la::BlockPattern& pattern = linear_.system().pattern();
+  const double little = std::numeric_limits<double>::epsilon() * largest(symmetric.K);
+  symmetric.M.set_zero();
+  for (Index i = 0; i < pattern.size(); ++i)
+    symmetric.M.block(pattern.diagonal(i)).setIdentity();
+  la::BlockLu<double> lu(pattern, motion_.active());
+  for (const double held : {0.0, 1.0, 3.7, 13.0})
+    if (lu.factor(symmetric, held * little, 0.0, 1.0) == la::Status::ok)
+      return lu.negative_eigenvalues();
+  throw run_error("E88", "the stiffness in axes that turn with the rotor cannot be factored",
+                  "use a transient step");
 }
 
 namespace {
