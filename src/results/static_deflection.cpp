@@ -9,12 +9,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::results {
 
 namespace {
 
 constexpr int stretches = 8;  ///< of an element, between the points at which it is drawn; even
+
+/// The cubic over 0 .. 1 that begins at zero without slope and ends at `end` with the slope `turn`.
+Vec3 cubic(double x, const Vec3& end, const Vec3& turn) {
+  return x * x * ((3.0 - 2.0 * x) * end + (x - 1.0) * turn);
+}
 
 /// How far the centre line of each element lies beside the cubic through its ends with the directors as
 /// slopes: what weight and shear add between nodes. With the exact section forces (section_results.hpp)
@@ -29,7 +35,12 @@ class BetweenNodes {
         forces_(assembly::calc_section_results(job.model, job.mesh, job.built, state,
                                                loads.elements, inner)) {}
 
-  Points of(std::size_t element) const;
+  struct Beside {
+    Points line;
+    std::optional<Vec3>
+        turn;  ///< of the section normal from end to end, of the sound shaft; where known
+  };
+  Beside of(std::size_t element) const;
 
  private:
   static constexpr int inner = stretches - 1;  ///< points between the ends of an element
@@ -37,12 +48,13 @@ class BetweenNodes {
   std::vector<assembly::SectionPoint> forces_;
 };
 
-BetweenNodes::Points BetweenNodes::of(std::size_t element) const {
-  Points out;
+BetweenNodes::Beside BetweenNodes::of(std::size_t element) const {
+  Beside beside;
+  Points& out = beside.line;
   out.fill(Vec3::Zero());
   const meshes::Element& e = job_.mesh.elements[element];
   const model::Shaft& shaft = job_.model.shafts[at(e.line)];
-  if (!shaft.path.empty() || shaft.sections[e.section].general) return out;
+  if (!shaft.path.empty() || shaft.sections[e.section].general) return beside;
   const elements::ElementSection section = assembly::element_section(job_.model, e);
   const double h = (e.s2 - e.s1) / stretches;
   std::array<Vec3, inner + 2> bending, shear;
@@ -66,9 +78,10 @@ BetweenNodes::Points BetweenNodes::of(std::size_t element) const {
   const Vec3 end = out.back(), turn = (e.s2 - e.s1) * slope;
   for (std::size_t k = 0; k <= stretches; ++k) {
     const double x = static_cast<double>(k) / stretches;
-    out[k] -= x * x * ((3.0 - 2.0 * x) * end + (x - 1.0) * turn);
+    out[k] -= cubic(x, end, turn);
   }
-  return out;
+  beside.turn = slope;
+  return beside;
 }
 
 /// The deflected centre line of one line of the mesh.
@@ -117,6 +130,9 @@ class DeflectedLine {
     const system::NodeState& n = node(p.node);
     return {job_.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
   }
+  /// What cracks make of the line in an element beside that cubic: a kink each. lost: the turning that the
+  /// sound shaft between the nodes does not have.
+  BetweenNodes::Points kinks(const meshes::Element& e, const Vec3& lost) const;
   void add_point(double s, const Vec3& u);
   void look_between_points();
 
@@ -152,6 +168,25 @@ void DeflectedLine::add_stations(io::Table& t) {
   }
 }
 
+BetweenNodes::Points DeflectedLine::kinks(const meshes::Element& e, const Vec3& lost) const {
+  BetweenNodes::Points out;
+  out.fill(Vec3::Zero());
+  std::vector<double> places;
+  for (const model::Crack& c : job_.model.cracks) {
+    const double from = std::max(e.s1, c.at.s), to = std::min(e.s2, c.to ? c.to->s : c.at.s);
+    if (c.at.shaft == number_ && from <= to) places.push_back(0.5 * (from + to));
+  }
+  for (const double s : places) {
+    const Vec3 kink = lost / static_cast<double>(places.size());
+    for (std::size_t k = 0; k <= stretches; ++k) {
+      const double x = static_cast<double>(k) / stretches;
+      out[k] += std::max(0.0, e.s1 + x * (e.s2 - e.s1) - s) * kink -
+                cubic(x, (e.s2 - s) * kink, (e.s2 - e.s1) * kink);
+    }
+  }
+  return out;
+}
+
 /// Between nodes: the cubic with the directors as end slopes, and what lies beside it.
 void DeflectedLine::add_elements(const BetweenNodes& between) {
   for (Index k = line_.first_element; k < line_.first_element + line_.elements; ++k) {
@@ -163,10 +198,13 @@ void DeflectedLine::add_elements(const BetweenNodes& between) {
     }
     // end slopes for the stretched length (thermal growth): chord, and the arc over it
     const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
-    const BetweenNodes::Points beside = between.of(at(k));
+    const BetweenNodes::Beside beside = between.of(at(k));
+    const Vec3 turned = b.d - a.d;
+    const BetweenNodes::Points kinked =
+        kinks(e, beside.turn ? Vec3(turned - *beside.turn) : Vec3(Vec3::Zero()));
     for (int i = k == line_.first_element ? 0 : 1; i <= stretches; ++i) {
       const double xi = static_cast<double>(i) / stretches, s = e.s1 + xi * (e.s2 - e.s1);
-      add_point(s, meshes::interpolate(a, b, arc, xi).r + beside[static_cast<std::size_t>(i)] -
+      add_point(s, meshes::interpolate(a, b, arc, xi).r + beside.line[at(i)] + kinked[at(i)] -
                        job_.model.shafts[number_].position(s));
     }
   }

@@ -267,3 +267,51 @@ TEST(Cracks, TheMeanIsThatOfTheComplianceOnAnyMesh) {
             << breathing << elements << beside;
   }
 }
+
+// A shaft of 1 m on two supports under 1000 N in the middle, where an open crack gives way like a hinge of
+// 2 MN m/rad: F L^3/48 EI and shear, and F L^2/16 of the hinge. The line has a kink there, no bend of the element
+// beside it: the largest deflection is that of the middle.
+TEST(Cracks, TheDeflectionHasAKinkAtTheCrack) {
+  for (const char* elements : {"1", "5"}) {
+    const DeckRun r(std::string(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[model.mesh]
+min_elements_per_section = )") +
+                    elements + R"(
+[shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 50], ["b", 500, 50]]
+[[crack]]
+at = "a:end"
+stiffness = "0.4 MN.m/rad"
+breathing = "open"
+phase = "-90 deg"
+[[load]]
+at = "a:end"
+force = ["0 N", "0 N", "-1000 N"]
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+name = "s"
+type = "static"
+speed = "0 rpm"
+)");
+    ASSERT_EQ(r.exit, 0) << r.log;
+    const whirl::io::Value deflection = r.summary("s").at("deflection").at("R");
+    EXPECT_NEAR(deflection.at("at [m]").number(), 0.5, 1e-12) << elements;
+    const Columns table = r.csv("s_deflection.csv");
+    double middle = 0;
+    for (const auto& row : table.rows)
+      middle = std::max(middle, std::abs(row[table.column("u_z [m]")]));
+    EXPECT_NEAR(deflection.at("largest [m]").number(), middle, 1e-9 * middle) << elements;
+  }
+}
