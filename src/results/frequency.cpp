@@ -381,9 +381,26 @@ void FrequencyStep::say_unloaded_pads(const system::State& still) {
   }
 }
 
+void FrequencyStep::say_open_gears() {
+  const la::MCK& m = linear.at(linear.Omega());
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const model::Bearing& b = job.model.bearings[i];
+    const auto* gears = std::get_if<model::GearPair>(&b.law);
+    if (!gears || gears->backlash < 0.0) continue;
+    const meshes::BearingNodes& at = job.mesh.bearings[i];
+    const Index slot = m.K.pattern().slot(at.shaft.node, at.other.node);
+    if (slot < 0 || !m.K.block(slot).isZero(0.0)) continue;
+    assume(fmt::format(
+        "the teeth of '{}' do not touch at the equilibrium, and nothing passes through them: a "
+        "torque that drives closes their play",
+        b.name));
+  }
+}
+
 void FrequencyStep::finish(const std::string& line) {
   if (const system::State& still = linear.equilibrium().state; still.q.size() > 0) {
     say_unloaded_pads(still);
+    say_open_gears();
     warn_of_short_bearings(job, step.name, still);
     run::warn_of_closed_contacts(job, step, equilibrium_at(linear.Omega()), still);
   }

@@ -85,6 +85,8 @@ class FrequencyStep {
  private:
   /// Of the equilibrium that the step ended with.
   void say_unloaded_pads(const system::State& still);
+  /// Gears with play that stands open there: the steps without time see two rotors.
+  void say_open_gears();
   /// W14, where the step takes the mean of a stiffness that turns.
   void warn_of_mean_stiffness();
   std::string type_, about_, claim_, also_;
