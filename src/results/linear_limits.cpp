@@ -128,14 +128,14 @@ void warn_of_unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
   warn(s.job, std::move(d));
 }
 
-void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
+bool warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
   std::optional<analysis::InstabilityBand> band;
   try {
     band = band_among(s, speeds);
   } catch (const Error& e) {
     warn_of_unknown_growth(s, speeds.back(), e);
   }
-  if (!band) return;
+  if (!band) return false;
   const double sense = speeds.front() < 0.0 ? -1.0 : 1.0;
   const auto edge = [sense](double Omega, const char* beyond, double last) {
     return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(last))
@@ -156,6 +156,7 @@ void warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
           : "it bends out at its own speed");
   d.hint = "a stability step finds the bands, a transient step what the rotor does in them";
   warn(s.job, std::move(d));
+  return true;
 }
 
 }  // namespace
@@ -204,7 +205,7 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   return out;
 }
 
-void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
+bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
   const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
@@ -213,9 +214,10 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
     std::vector<double> backwards, forwards;
     for (const double Omega : speeds)
       if (Omega != 0.0) (Omega < 0.0 ? backwards : forwards).push_back(Omega);
+    bool grows = false;
     for (const std::vector<double>& sense : {backwards, forwards})
-      if (!sense.empty()) warn_of_band(s, sense);
-    return;
+      grows = (!sense.empty() && warn_of_band(s, sense)) || grows;
+    return grows;
   }
   Growth free_motions(s, motion);
   for (const double Omega : speeds) {
@@ -232,15 +234,17 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
       const std::string moments = moments_along_shafts(s.job.model);
       if (!moments.empty()) d.hint += "; " + moments;
       warn(s.job, std::move(d));
+      return true;
     } catch (const Error& e) {
       warn_of_unknown_growth(s, Omega, e);
     }
-    return;
+    return false;
   }
-  if (free_motions.known_to() == infinity) return;
+  if (free_motions.known_to() == infinity) return false;
   const double top = to_hz(free_motions.known_to());
   s.summary()["growth not excluded above [Hz]"] = top;
   s.say_also(fmt::format("growth above {:.5g} Hz not excluded", top));
+  return false;
 }
 
 /// Share of the film left by the equilibrium up to which coefficients of small motions are believed.

@@ -100,8 +100,8 @@ void warn_of_coarse_tables(run::Job& job, const std::string& step,
 void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 
 /// W13: at one of these speeds (reference, rad/s) a free motion grows, and the steady response there
-/// is never reached.
-void warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
+/// is never reached. Whether one does, as far as is known.
+bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
                     analysis::Motion motion = analysis::Motion::all);
 /// Speeds within those of a response, ascending, at which free motions are looked at: both ends and the
 /// middle; all of them where a deck lists a few; and the rows of tables, between which coefficients have

@@ -44,6 +44,8 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
   const double Omega = machine.ratio * speed;
   // what another rotor of the deck does, and this one not with it, is none of its modes
   constexpr double with_it = 1e-6;
+  // on unequal supports the slow modes are nearly straight lines, of either sign by little
+  constexpr double backward_below = -0.5;
   const auto lateral = [&](const analysis::WhirlMode& m) {
     return m.kind == analysis::ModeKind::lateral && m.oscillates() &&
            moves(system, m.x, machine.shaft, with_it);
@@ -53,7 +55,7 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
     if (!lateral(m)) continue;
     if (m.growth() > 0 && (!growing || m.log_decrement < growing->log_decrement)) growing = &m;
     if (!any || m.frequency < any->frequency) any = &m;
-    if (!(m.forwardness > 0)) continue;
+    if (!(m.forwardness > backward_below)) continue;
     if (!forward || m.frequency < forward->frequency) forward = &m;
     if (m.frequency < std::abs(Omega) && (!best || m.log_decrement < best->log_decrement))
       best = &m;

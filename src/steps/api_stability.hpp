@@ -17,8 +17,8 @@ struct WhirlingMode {
   bool grows = false;
 };
 /// The lateral mode of the machine's rotor that grows fastest a turn, whatever way it whirls and however
-/// fast; where none grows, of the forward ones that are slower than the rotor at a speed of the
-/// reference the one of least log decrement; where there is none, the slowest forward one, and
+/// fast; where none grows, of those that are not backward (forwardness below -0.5) and slower than the rotor at
+/// a speed of the reference the one of least log decrement; where there is none, the slowest of them, and
 /// without these the slowest lateral one.
 WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
                           const system::System& system, const ApiMachine& machine, double speed);

@@ -11,6 +11,7 @@
 #include <results/channels.hpp>
 #include <results/compliance.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
@@ -83,6 +84,7 @@ class TorsionalReport {
   void list_excitations();
   double highest_excitation() const;  ///< over the operating speeds, rad/s
   void add_margins();
+  void judge_growth();
   void add_interference();
   void add_stresses();
   double ratio_of(std::size_t shaft) const {
@@ -251,6 +253,20 @@ void TorsionalReport::add_margins() {
     checks_.add(std::move(c));
   }
   s_.add_table("margins", std::move(t), false);
+}
+
+/// Torques that rise with the speed, and controls, can drive torsion: no margin says so.
+void TorsionalReport::judge_growth() {
+  const std::vector<double> speeds{law_.operating[0], law_.operating[1]};
+  if (!results::warn_of_growth(s_, results::speeds_to_judge(s_.job, speeds),
+                               analysis::Motion::torsional))
+    return;
+  Check c;
+  c.what = "torsional stability";
+  c.passed = false;
+  c.where = "operating speeds";
+  c.remark = "a motion grows (W13)";
+  checks_.add(std::move(c));
 }
 
 /// An excitation with a frequency and an order, in the interference diagram.
@@ -645,6 +661,7 @@ void TorsionalReport::execute() {
   find_modes();
   add_interference();
   add_margins();
+  judge_growth();
   add_stresses();
   add_events();
   io::Value& v = s_.summary();

@@ -174,3 +174,73 @@ TEST(ApiVerdicts, TorsionalModesAreJudgedAsFarAsExcitationsReach) {
   ASSERT_GE(modes.size(), 8u);
   EXPECT_NEAR(modes[7].number(), 434.88, 0.05);
 }
+
+// A motor whose torque rises by 2.86 N m s/rad drives the torsion of the train: 1/2 2.86/0.1 = 14.3 1/s but for
+// what the other disk takes.
+TEST(ApiVerdicts, TorsionThatGrowsFails) {
+  const auto deck = [](const std::string& rows) {
+    return R"(format = 1
+[output]
+report = false
+[shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 30], ["b", 500, 30]]
+[[disk]]
+name = "m"
+at = "a:start"
+mass = "20 kg"
+Ip = "0.1 kg.m^2"
+[[disk]]
+name = "l"
+at = "b:end"
+mass = "20 kg"
+Ip = "2 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[drive]]
+name = "motor"
+at = "m"
+type = "torque"
+columns = ["speed[rpm]", "torque[N.m]"]
+rows = )" + rows +
+           R"(
+[[drive]]
+name = "load"
+at = "l"
+type = "torque"
+torque = "-130 N.m"
+[[step]]
+name = "api"
+type = "api_torsional"
+operating_speed = ["950 rpm", "1000 rpm"]
+)";
+  };
+  const DeckRun grows(deck("[[0, 100], [900, 100], [1100, 160], [2000, 160]]"));
+  ASSERT_EQ(grows.exit, 0) << grows.log;
+  EXPECT_EQ(result_of(grows, "torsional stability"), "FAILED") << grows.log;
+  EXPECT_TRUE(grows.says("W13")) << grows.log;
+  const DeckRun decays(deck("[[0, 160], [900, 160], [1100, 100], [2000, 100]]"));
+  EXPECT_EQ(result_of(decays, "torsional stability"), "") << decays.log;
+  EXPECT_FALSE(decays.says("W13")) << decays.log;
+}
+
+// On unequal supports slow modes are nearly straight lines: of them, not of the first one that happens to be
+// forward, the least stable one is judged.
+TEST(ApiVerdicts, StraightLinesAreNoBackwardWhirl) {
+  const DeckRun r(machine(linear("6e6", "6e8", "4e2", "2e5"),
+                          seal("seal", "a:mid", "1e3") +
+                              api("\"7200 rpm\", \"8000 rpm\"", "seals = [\"seal\"]\n" + stage)));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  const whirl::io::Value summary = r.summary("api");
+  for (const whirl::io::Value& c : summary.at("compliance").items())
+    if (c.at("check").text() == "level 2: log decrement")
+      EXPECT_NE(c.at("where").text().find("49.9"), std::string::npos) << r.log;
+}
