@@ -1,4 +1,5 @@
 #include <analysis/statics/equilibrium.hpp>
+#include <analysis/statics/definiteness.hpp>
 #include <core/contract.hpp>
 
 #include <core/error.hpp>
@@ -517,6 +518,40 @@ void EquilibriumSolver::list_holds(const system::State& state, Equilibrium& e) {
   e.axial_holds = axial_holds_;
 }
 
+bool EquilibriumSolver::attracts(double Omega, const system::State& s) {
+  running_.tangent(s.frames, Omega, s.q, matrices_);
+  const Definiteness d = judge_tangent(matrices_.K, free_, running_.system(), length_, false);
+  return !d.judged || d.stable();
+}
+
+bool EquilibriumSolver::drift_from(const system::State& begin, double Omega, bool found,
+                                   Equilibrium& out) {
+  const system::State repelling = out.state;
+  const std::string why = why_;
+  out.state = begin;
+  if (drift(Omega, out.state, out.iterations) == Outcome::converged &&
+      (!found || attracts(Omega, out.state)))
+    return true;
+  if (found) {  // or from where it repels, to one side and the other
+    constexpr double aside = 1e-6;
+    for (const double side : {aside, -aside}) {
+      out.state = repelling;
+      VecX moved = VecX::Constant(out.state.q.size(), side);
+      for (Index k = 0; k < moved.size(); ++k)
+        if (k % 6 < 3 && !running_.system().node(k / 6).scalar) moved[k] *= length_;
+      clear_held(moved);
+      out.state.q += moved;
+      if (drift(Omega, out.state, out.iterations) == Outcome::converged &&
+          attracts(Omega, out.state))
+        return true;
+    }
+  }
+  why_ = why;
+  out.state = repelling;
+  running_.residual(repelling.frames, Omega, repelling.q, r_);
+  return false;
+}
+
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
   throw_if_interrupted();
   const system::System& sys = running_.system();
@@ -539,7 +574,13 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
     s = begin;
     o = close_gaps(Omega, s, out.iterations);
   }
-  if (o != Outcome::converged && !load_in_steps(Omega, begin.t, out)) return std::nullopt;
+  const bool directly = o == Outcome::converged;
+  const bool found = directly || load_in_steps(Omega, begin.t, out);
+  // What was found on a way round a bend, or among pads that balance themselves, may repel.
+  const bool doubtful = !directly || sys.relaxes();
+  if ((!found || (doubtful && !attracts(Omega, s))) && !drift_from(begin, Omega, found, out) &&
+      !found)
+    return std::nullopt;
   if (!spin_holds_.empty()) close_backlash(Omega, s, out.iterations);
   if (options_.chart_change) change_charts(s);
   sys.follow(s);

@@ -1,7 +1,8 @@
 // Spinning, loaded equilibrium: R(q; Omega) = 0 of steady_rotation.hpp, with gravity sag, preload,
 // torque and what internal damping and films add at speed. Newton with the exact tangent, in whole
 // steps; when that fails, with a natural monotonicity line search (P. Deuflhard, Newton Methods for
-// Nonlinear Problems, 2004, ch. 3); when that fails too, the loads are put on in steps.
+// Nonlinear Problems, 2004, ch. 3); when that fails too, the loads are put on in steps, and
+// at last what damps is left to bring the model there (equilibrium_drift.cpp).
 //
 // A rotor that is free to turn needs one more condition a rotor: the axial angle of its first node
 // is held, and the torque that keeps it at its speed comes out as a reaction. Geared lines that
@@ -98,6 +99,16 @@ class EquilibriumSolver {
   enum class Step { bold, careful, relaxed };
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
+  /// The motion C q' = -R without inertia, in implicit steps that lengthen as the forces come into balance:
+  /// films bring a journal and its pads to an equilibrium that attracts, whatever bends the way there.
+  Outcome drift(double Omega, system::State& s, int& iterations);
+  /// drift() from a state, then, where the state in out is an equilibrium (found), from beside that one; into
+  /// out, when it ends in an equilibrium that attracts (else out is as it was).
+  bool drift_from(const system::State& begin, double Omega, bool found, Equilibrium& out);
+  /// No small displacement drives the state further away, as far as that can be told.
+  bool attracts(double Omega, const system::State& s);
+  /// Newton's method from here ends where steps of this size still lead; else s is as before.
+  bool ends_near(double Omega, system::State& s, double size, int& iterations);
   void clear_held(VecX& x) const;
   /// Takes the last correction as it is; whether forces balance then.
   bool settle(double Omega, system::State& s);
