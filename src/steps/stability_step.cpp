@@ -167,12 +167,26 @@ std::string beyond_text(const analysis::Onset& x) {
 void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
   io::Table table;
   table.title = "Onset of instability";
+  table.nan_means = "stands among the verdicts";
   table.columns = {{"speed", "rpm", ""},           {"whirl frequency", "Hz", ""},
                    {"frequency / speed", "-", ""}, {"kind", "-", ""},
                    {"direction", "-", ""},         {"above this speed", "-", ""}};
   io::Value& list = s.summary()["onsets"];
   list = io::Value::array();
+  // what grows without an onset found stands in its place among the others
+  std::vector<analysis::Unplaced> unknown = r.unplaced;
+  std::sort(unknown.begin(), unknown.end(),
+            [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  std::size_t next = 0;
+  const auto add_unplaced_below = [&](double speed) {
+    for (; next < unknown.size() && unknown[next].speed < speed; ++next) {
+      const analysis::Unplaced& u = unknown[next];
+      table.add({to_rpm(u.speed), to_hz(u.frequency), u.frequency / u.speed, std::string(),
+                 std::string(), "unstable there; where that begins below is not known"});
+    }
+  };
   for (const analysis::Onset& x : r.onsets) {
+    add_unplaced_below(x.speed);
     table.add({to_rpm(x.speed), to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)),
                results::direction_text(x.mode), beyond_text(x)});
     io::Value e = io::Value::object();
@@ -183,6 +197,7 @@ void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
     e["growth begins there"] = x.begins;
     list.push(std::move(e));
   }
+  add_unplaced_below(infinity);
   s.add_table("onset", std::move(table));
   io::Value& unplaced = s.summary()["growth of unknown onset"];
   unplaced = io::Value::array();
