@@ -19,7 +19,7 @@ Check check_critical_speeds(run::Job& sub, const model::Step& step,
   results::FrequencyStep s(sub, step, "damped critical speeds", "damped critical speeds",
                            law.max_speed);
   CriticalMarginOptions o;
-  o.order = machine.ratio;
+  o.order = sub.model.shafts[machine.shaft].speed_ratio;
   o.min_speed = law.min_speed;
   o.max_speed = law.max_speed;
   o.range = {law.operating[0], law.operating[1]};

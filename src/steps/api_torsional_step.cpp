@@ -166,9 +166,13 @@ void TorsionalReport::find_modes() {
   if (!modes_.empty() && modes_.back().frequency < highest) {
     o.count = 0;
     o.max_frequency = highest;
+    analysis::SpectrumCertificate of_reached;
     std::vector<analysis::WhirlMode> reached =
-        analysis::whirl_modes(s_.linear, law_.operating[1], o, &certificate);
-    if (reached.size() > modes_.size()) modes_ = std::move(reached);
+        analysis::whirl_modes(s_.linear, law_.operating[1], o, &of_reached);
+    if (reached.size() > modes_.size()) {
+      modes_ = std::move(reached);
+      certificate = of_reached;
+    }
   }
   s_.certify(certificate);
   results::MeshAccuracy mesh(s_);

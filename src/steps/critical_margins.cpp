@@ -1,5 +1,7 @@
 #include <steps/critical_margins.hpp>
 
+#include <analysis/response/harmonic.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +26,24 @@ std::optional<double> peak_of(const analysis::Critical& c, const std::vector<dou
   return best;
 }
 
+/// How far the shafts that turn at this order whirl with their spin in a mode, as WhirlMode::forwardness of them
+/// alone: on others, which turn the other way, the same orbit is another one.
+double forwardness_of(analysis::Linearizer& linear, const analysis::WhirlMode& mode, double order) {
+  const system::System& system = linear.system();
+  double area = 0, sum = 0;
+  for (Index i = 0; i < system.nodes(); ++i) {
+    const system::NodeDef& node = system.node(i);
+    if (node.scalar || node.line < 0) continue;
+    const double ratio = linear.running().ratio(node.line);
+    if (std::abs(std::abs(ratio) - std::abs(order)) > 1e-9 * std::abs(order)) continue;
+    const analysis::PointAmplitude a = analysis::amplitude_at(linear, mode.x, {i, 0.0});
+    const double forward = std::norm(a.forward()), backward = std::norm(a.backward());
+    area += forward - backward;
+    sum += forward + backward;
+  }
+  return sum > 0 ? area / sum : -1.0;
+}
+
 }  // namespace
 
 std::vector<CriticalMargin> critical_margins(analysis::Linearizer& linear,
@@ -36,11 +56,10 @@ std::vector<CriticalMargin> critical_margins(analysis::Linearizer& linear,
   o.damped = true;
   o.motion = analysis::Motion::lateral;
   o.threads = options.threads;
-  const double sense = options.order < 0.0 ? -1.0 : 1.0;
   std::vector<CriticalMargin> out;
   for (analysis::Critical& c : analysis::critical_speeds(linear, o, certificate)) {
     const bool lateral = c.mode.kind == analysis::ModeKind::lateral;
-    if (!lateral || sense * c.mode.forwardness < hardly_driven) continue;
+    if (!lateral || forwardness_of(linear, c.mode, options.order) < hardly_driven) continue;
     CriticalMargin m;
     m.actual = analysis::margin_of(c.speed, options.range);
     m.required = options.rule.required(c.amplification(), c.speed > options.range.max);

@@ -125,6 +125,6 @@ TEST(NegativeSpeeds, GrowthIsLookedForAtTheFastestSpeed) {
   };
   const DeckRun forth(damped("start = \"100 rpm\", stop = \"20000 rpm\"")),
       back(damped("start = \"-20000 rpm\", stop = \"-100 rpm\""));
-  EXPECT_TRUE(forth.says("the rotor is unstable at 1")) << forth.log;
+  EXPECT_TRUE(forth.says("the rotor is unstable at ")) << forth.log;
   EXPECT_TRUE(back.says("the rotor is unstable at -")) << back.log;
 }
