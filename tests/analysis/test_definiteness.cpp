@@ -1,11 +1,11 @@
 // Negative directions of tangents: against dense eigenvalues, and of columns beyond their buckling
 // loads.
+#include <la/dense.hpp>
 #include "rotors.hpp"
 
 #include <analysis/statics/definiteness.hpp>
 #include <analysis/statics/equilibrium.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -68,8 +68,8 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
     const Definiteness d = judge_tangent(K, s.active(), s, 1.5);
     EXPECT_EQ(d.symmetric, symmetric);
     if (symmetric) {
-      const Eigen::SelfAdjointEigenSolver<MatX> eigen(D);
-      EXPECT_EQ(d.negative, (eigen.eigenvalues().array() < 0).count()) << trial;
+      const la::SymmetricEigenpairs eigen = la::symmetric_eigenpairs(D);
+      EXPECT_EQ(d.negative, (eigen.values.array() < 0).count()) << trial;
       EXPECT_TRUE(d.certain);
       if (d.negative > 0) {
         // the shape belongs to a negative energy, and none is lower in its metric
@@ -82,7 +82,7 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
       }
       continue;
     }
-    const VecXc values = Eigen::EigenSolver<MatX>(D, false).eigenvalues();
+    const VecXc values = la::eigenvalues(D);
     // the number of negative real ones depends on the metric, its parity does not
     const Index negative = (values.array().real() < 0 && values.array().imag() == 0).count();
     EXPECT_EQ(d.sign < 0, negative % 2 != 0) << trial;

@@ -1,13 +1,12 @@
 // Onsets of whirl and of divergence of random rotors on tabulated bearings, from light to heavy, soft to
 // stiff, undamped to overdamped, with stiffness that may become negative: verdicts and onsets against
 // a dense method; on tables against frequency as well, by the criterion of Nyquist.
+#include <la/dense.hpp>
 #include "../validation/deck_model.hpp"
 #include "two_methods.hpp"
 
 #include <core/error.hpp>
 #include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <cstdlib>
@@ -137,13 +136,13 @@ class Nyquist {
     const auto scaled = [&](const MatXc& A) {
       return MatXc(scale.asDiagonal() * A * scale.asDiagonal());
     };
-    const Eigen::PartialPivLU<MatXc> lu(scaled(Q));
+    const la::DenseLu<Complex> lu(scaled(Q));
     MatXc op(2 * n, 2 * n);
     op.topLeftCorner(n, n) = -lu.solve(scaled(shift * (p.A1 + 2.0 * shift * p.A2)));
     op.topRightCorner(n, n) = -lu.solve(scaled(shift * shift * p.A2));
     op.bottomLeftCorner(n, n).setIdentity();
     op.bottomRightCorner(n, n).setZero();
-    const VecXc theta = Eigen::ComplexEigenSolver<MatXc>(op, false).eigenvalues();
+    const VecXc theta = la::eigenpairs(op).values;
     const double largest = theta.cwiseAbs().maxCoeff();
     std::vector<Complex> out;
     for (const Complex t : theta)

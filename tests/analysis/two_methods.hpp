@@ -7,6 +7,7 @@
 #include <analysis/spectra/critical.hpp>
 #include <analysis/spectra/stability.hpp>
 
+#include <la/dense.hpp>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -276,7 +277,7 @@ inline Index negative_stiffnesses(Linearizer& linear, double Omega) {
   MatX K = dense.K(held, held);
   const VecX scale = K.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   K = scale.asDiagonal() * K * scale.asDiagonal();
-  const VecXc values = K.eigenvalues();
+  const VecXc values = la::eigenvalues(K);
   Index negative = 0;
   for (Index k = 0; k < values.size(); ++k)
     negative += values(k).imag() == 0.0 && values(k).real() < -1e-12;

@@ -2,6 +2,7 @@
 #include "deck_run.hpp"
 #include "reference_rotor.hpp"
 
+#include <la/dense.hpp>
 #include <core/types.hpp>
 
 #include <algorithm>
@@ -243,14 +244,15 @@ TEST(ExampleNumbers, MisalignedCoupling) {
   tilt[m + 1] = -1;
   K += mean * b * b.transpose() + 4e3 * tilt * tilt.transpose();
   const double w = 2 * Omega;
-  const Eigen::PartialPivLU<MatXc> still(K.cast<Complex>()),
-      turning((K - w * w * M).cast<Complex>() + Complex(0, w) * C + w * Omega * G);
+  const la::DenseLu<Complex> still(MatXc(K.cast<Complex>())),
+      turning(MatXc((K - w * w * M).cast<Complex>() + Complex(0, w) * C + w * Omega * G));
   Complex r0 = -2e-4, r2 = 0;
   VecXc x2;
   for (int it = 0; it < 60; ++it) {
-    const VecXc x0 = still.solve(-Complex(0, 1) * weight + b * (mean * 2e-4 - D * std::conj(r2)));
+    const VecXc x0 =
+        still.solve(VecXc(-Complex(0, 1) * weight + b * (mean * 2e-4 - D * std::conj(r2))));
     r0 = b.cast<Complex>().dot(x0) - 2e-4;
-    x2 = turning.solve(-b * (D * std::conj(r0)));
+    x2 = turning.solve(VecXc(-b * (D * std::conj(r0))));
     r2 = b.cast<Complex>().dot(x2);
   }
   const DeckRun d(example("27_misaligned_coupling"));

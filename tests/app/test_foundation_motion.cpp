@@ -2,9 +2,8 @@
 // rotations, against the exponential of the small linear system.
 #include "deck_run.hpp"
 
+#include <la/dense.hpp>
 #include <core/types.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <fmt/format.h>
 
@@ -160,15 +159,14 @@ report = false
   A.topRightCorner<8, 8>().setIdentity();
   A.bottomLeftCorner<8, 8>() = -M.inverse() * K;
   A.bottomRightCorner<8, 8>() = -M.inverse() * C;
-  const Eigen::ComplexEigenSolver<MatXc> eigen(A.cast<Complex>());
+  const la::DenseEigenpairs eigen = la::eigenpairs(A);
   VecXc start = VecXc::Zero(16);
   start.head<4>() = q0.cast<Complex>();
   start.segment<4>(8) = v0.cast<Complex>();
-  const VecXc part = eigen.eigenvectors().partialPivLu().solve(start);
+  const VecXc part = la::DenseLu<Complex>(eigen.vectors).solve(start);
   const auto exact = [&](double t) {
-    return VecX((eigen.eigenvectors() *
-                 (eigen.eigenvalues() * t).array().exp().matrix().asDiagonal() * part)
-                    .real());
+    return VecX(
+        (eigen.vectors * (eigen.values * t).array().exp().matrix().asDiagonal() * part).real());
   };
 
   const Columns run = d.csv("run.csv");
@@ -185,6 +183,6 @@ report = false
   }
   for (std::size_t k = 0; k < 6; ++k)
     EXPECT_LT(worst[k], 2e-6 * largest[k]) << names[k];
-  EXPECT_GT(eigen.eigenvalues().real().maxCoeff(), 1.0)
+  EXPECT_GT(eigen.values.real().maxCoeff(), 1.0)
       << "the circulation feeds a mode: symmetric matrices would not";
 }

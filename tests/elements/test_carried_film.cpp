@@ -1,9 +1,9 @@
 // Films that conserve mass in a motion at large: balance of the oil, equilibria and small motions
 // against the film of the momentary state, squeeze between plates in closed form, tangents and power.
+#include <la/dense.hpp>
 #include "conformance.hpp"
 #include <core/dual.hpp>
 #include <elements/films/carried_film.hpp>
-#include <Eigen/LU>
 #include <random>
 
 namespace carried_film_tests {
@@ -292,7 +292,7 @@ Eigen::Matrix2cd dynamic_stiffness(const FiniteJournal& film, const Vec2& r, dou
     }
     MatXc A = O_m.cast<Complex>();
     A.diagonal().array() += Complex(0.0, w);
-    const MatXc follow = A.partialPivLu().solve(O_r.cast<Complex>());
+    const MatXc follow = la::DenseLu<Complex>(A).solve(MatXc(O_r.cast<Complex>()));
     Z -= F_r.cast<Complex>() - F_m.cast<Complex>() * follow;
   }
   return Z;

@@ -2,7 +2,7 @@
 // the Bernoulli beam with a point mass mu times its own, 1 = mu beta/4 (tan(beta/2) - tanh(beta/2))
 // for symmetric modes (W. C. Hurty, M. F. Rubinstein, Dynamics of Structures, 1964, ch. 5), beta^4
 // = omega^2 rhoA L^4/EI; and the weight that the shares leave out.
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <elements/shaft/timoshenko_matrices.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
@@ -49,8 +49,7 @@ double frequency(double mu, int n, int m, bool shared) {
   for (int i = 1; i < 2 * n + 2; ++i)
     if (i != 2 * n) keep.push_back(i);
   const MatX k = K(keep, keep), mm = M(keep, keep);
-  return std::sqrt(Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, mm, Eigen::EigenvaluesOnly)
-                       .eigenvalues()(m - 1));
+  return std::sqrt(la::symmetric_eigenpairs(k, mm).values(m - 1));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Tilting pads: conformance, a published geometry against an independent two-dimensional solution,
 // locked pads against the lobed journal, reduced coefficients, smoothness, grids, bad input.
+#include <la/dense.hpp>
 #include "conformance.hpp"
 #include <core/error.hpp>
 #include <elements/films/tilting_pad.hpp>
@@ -334,14 +335,14 @@ TEST(TiltingPad, ReducedCoefficientsTwoWays) {
                Kp = full.K.bottomRightCorner(n, n);
     VecX q = VecX::Zero(n), v = q;
     const MatX left = Mp / dt + 0.5 * Cp + 0.25 * dt * Kp;
-    const Eigen::PartialPivLU<MatX> lu(left);
+    const la::DenseLu<double> lu(left);
     Vec2 in_phase = Vec2::Zero(), ahead = Vec2::Zero();
     const Vec2 e = Vec2(1, 0);
     for (int k = 0; k < turns * steps; ++k) {
       const double t = (k + 0.5) * dt;
       const Vec2 x = e * std::cos(w * t), x_rate = -w * e * std::sin(w * t);
       const VecX push = full.K.bottomLeftCorner(n, 2) * x + full.C.bottomLeftCorner(n, 2) * x_rate;
-      const VecX next = lu.solve((Mp / dt - 0.5 * Cp - 0.25 * dt * Kp) * v - Kp * q - push);
+      const VecX next = lu.solve(VecX((Mp / dt - 0.5 * Cp - 0.25 * dt * Kp) * v - Kp * q - push));
       const VecX middle = 0.5 * (v + next), place = q + 0.5 * dt * middle;
       if (k >= (turns - 1) * steps) {
         const Vec2 F = full.K.topLeftCorner(2, 2) * x + full.C.topLeftCorner(2, 2) * x_rate +

@@ -1,6 +1,7 @@
 // Natural frequencies of small dense beams built from the element constants, against closed forms
 // and against an independent shooting solution of the differential equations; measured orders of
 // convergence.
+#include <la/dense.hpp>
 #include "round_sections.hpp"
 #include <complex>
 #include <gtest/gtest.h>
@@ -54,15 +55,14 @@ struct Beam {
   /// iteration with the Rayleigh functional from the mode at rest, which keeps full accuracy
   /// whatever the highest frequency of the mesh.
   double whirl(int m, double Omega, int side) const {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> rest(K, M);
-    VecX x = rest.eigenvectors().col(rigid + m - 1);
+    const la::SymmetricEigenpairs rest = la::symmetric_eigenpairs(K, M);
+    VecX x = rest.vectors.col(rigid + m - 1);
     double o = 0;
     for (int it = 0; it < 12; ++it) {
       const double a = x.dot(M * x), b = Omega * x.dot(G * x), k = x.dot(K * x);
       o = (b + side * std::sqrt(b * b + 4 * a * k)) / (2 * a);
       const double shift = o * (it < 4 ? 1 + 1e-3 : 1 + 1e-7);
-      x = (K + shift * Omega * G - shift * shift * M)
-              .partialPivLu()
+      x = la::DenseLu<double>(MatX(K + shift * Omega * G - shift * shift * M))
               .solve(VecX((2 * shift * M - Omega * G) * x));
       x.normalize();
     }
@@ -353,8 +353,7 @@ double torsion(const ElementSection& s, double L, int n, int m, MassKind kind, d
     M.block<2, 2>(e, e) += c.polar;
   }
   const MatX k = K.bottomRightCorner(n, n), mm = M.bottomRightCorner(n, n);
-  return std::sqrt(Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, mm, Eigen::EigenvaluesOnly)
-                       .eigenvalues()(m - 1));
+  return std::sqrt(la::symmetric_eigenpairs(k, mm).values(m - 1));
 }
 /// theta' = T/GJ, T' = -omega^2 rhoIp theta from (0, 1) to T = 0.
 double exact_torsion(const ElementSection& s, double L, double guess) {

@@ -1,10 +1,10 @@
 // The rest of the rotary inertia on the triads: positive, and whole.
+#include <la/dense.hpp>
 #include <core/rotation.hpp>
 #include <elements/shaft/general_beam.hpp>
 #include <elements/shaft/section_beam.hpp>
 #include <elements/shaft/triad_inertia.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -57,7 +57,7 @@ struct Draw {
 
 template <class M>
 double least_eigenvalue(const M& m) {
-  return Eigen::SelfAdjointEigenSolver<MatX>(MatX(0.5 * (m + m.transpose()))).eigenvalues()[0];
+  return la::symmetric_eigenpairs(MatX(0.5 * (m + m.transpose()))).values[0];
 }
 
 FullSection section_of(Draw& draw, double height) {

@@ -2,8 +2,7 @@
 // sparse eigensolver and of the root counter.
 #pragma once
 #include "fixtures.hpp"
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <la/dense.hpp>
 #include <la/eigen.hpp>
 #include <la/root_count.hpp>
 
@@ -28,7 +27,7 @@ inline std::vector<Complex> dense_spectrum(const MCK& m, const Mask& active, dou
   const auto scaled = [&](const MatX& a) {
     return MatX(scale.asDiagonal() * a * scale.asDiagonal());
   };
-  const Eigen::PartialPivLU<MatX> lu(scaled(Q));
+  const DenseLu<double> lu(scaled(Q));
   MatX op(2 * n, 2 * n);
   const MatX linear = shift * (2.0 * shift * scaled(M) + scaled(C));
   // z = (x, (lambda - shift) x / shift): Q(shift) x + (lambda - shift) Q' x + (lambda - shift)^2 M
@@ -37,7 +36,7 @@ inline std::vector<Complex> dense_spectrum(const MCK& m, const Mask& active, dou
   op.topRightCorner(n, n) = -lu.solve(MatX(shift * shift * scaled(M)));
   op.bottomLeftCorner(n, n).setIdentity();
   op.bottomRightCorner(n, n).setZero();
-  const VecXc theta = op.eigenvalues();
+  const VecXc theta = eigenvalues(op);
   std::vector<Complex> out;
   for (const Complex t : theta)
     if (std::abs(t) > 1e-10 * theta.cwiseAbs().maxCoeff()) out.push_back(shift + shift / t);

@@ -2,9 +2,8 @@
 // frequency, is what a table of a support against frequency holds.
 #include "dense_spectrum.hpp"
 #include <gtest/gtest.h>
+#include <la/dense.hpp>
 #include <la/axis_count.hpp>
-
-#include <Eigen/LU>
 
 using namespace whirl;
 using namespace whirl::la;
@@ -57,8 +56,9 @@ struct Condensed {
   const MCK& at(double w) {
     const Complex s(0.0, std::max(w, 1e-5));
     const MatXc Q = s * s * all.M + s * all.C + all.K;
-    const MatXc pad = Q.topRightCorner(6, 6) *
-                      Q.bottomRightCorner(6, 6).partialPivLu().solve(Q.bottomLeftCorner(6, 6));
+    const MatXc pad =
+        Q.topRightCorner(6, 6) *
+        DenseLu<Complex>(MatXc(Q.bottomRightCorner(6, 6))).solve(MatXc(Q.bottomLeftCorner(6, 6)));
     m.M.block(0) = all.M.topLeftCorner(6, 6);
     m.K.block(0) = all.K.topLeftCorner(6, 6) - pad.real();
     m.C.block(0) = all.C.topLeftCorner(6, 6) - pad.imag() / s.imag();

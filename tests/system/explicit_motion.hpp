@@ -1,10 +1,10 @@
 // Motions of small systems by the test's own order-14 integrator, in both forms of the equations.
 #pragma once
+#include <la/dense.hpp>
 #include "../core/extrapolation.hpp"
 #include <core/rotation.hpp>
 #include <system/momentum.hpp>
 #include <system/problem.hpp>
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <memory>
 
@@ -110,7 +110,7 @@ class SecondOrderMotion final : public Motion {
     }
     const MatX Ma = M(active_, active_);
     const VecX ra = r(active_);
-    a(active_) = -Ma.partialPivLu().solve(ra);
+    a(active_) = -la::DenseLu<double>(Ma).solve(ra);
     return a;
   }
   const System& s_;

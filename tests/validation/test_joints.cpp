@@ -1,4 +1,5 @@
 // Joints without penalty through the deck: welds against uncut lines, frames, linkages.
+#include <la/dense.hpp>
 #include "../la/fixtures.hpp"
 #include "joint_decks.hpp"
 #include "record.hpp"
@@ -9,7 +10,6 @@
 #include <core/error.hpp>
 #include <system/joint_start.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -619,7 +619,7 @@ double least_mass(const DeckModel& d) {
     if (M(i, i) != 0) massive.push_back(i);
   const VecX size = M.diagonal()(massive).cwiseAbs().cwiseSqrt().cwiseInverse();
   const MatX scaled = size.asDiagonal() * M(massive, massive) * size.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<MatX>(scaled).eigenvalues()[0];
+  return la::symmetric_eigenpairs(scaled).values[0];
 }
 
 }  // namespace
