@@ -389,10 +389,10 @@ TEST_F(Resume, ALostCheckpointLeavesTheOneBefore) {
     const fs::path last = "cut/checkpoint/run_up.whirl";
     if (fs::exists(
             "cut/checkpoint/run_up.whirl.before")) {  // else the kill came before the next one
-      if (cuts % 2 == 0 || !fs::exists(last))
-        fs::remove(last);
-      else
-        fs::resize_file(last, 100);
+      // a file of its own: at the kill both names may have been those of one file
+      const std::string part = fs::exists(last) ? read(last).substr(0, 100) : std::string();
+      fs::remove(last);
+      if (cuts % 2 != 0 && !part.empty()) std::ofstream(last, std::ios::binary) << part;
     }
     code = run("d.toml", "cut", true, 0.2 * whole, SIGKILL);
   }
