@@ -382,11 +382,11 @@ void FrequencyStep::say_unloaded_pads(const system::State& still) {
 }
 
 void FrequencyStep::say_open_gears() {
-  const la::MCK& m = linear.at(linear.Omega());
   for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
     const model::Bearing& b = job.model.bearings[i];
     const auto* gears = std::get_if<model::GearPair>(&b.law);
     if (!gears || gears->backlash < 0.0) continue;
+    const la::MCK& m = linear.at(linear.Omega());
     const meshes::BearingNodes& at = job.mesh.bearings[i];
     const Index slot = m.K.pattern().slot(at.shaft.node, at.other.node);
     if (slot < 0 || !m.K.block(slot).isZero(0.0)) continue;

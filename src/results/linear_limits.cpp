@@ -183,6 +183,33 @@ std::string moments_along_shafts(const model::Model& m) {
       names);
 }
 
+namespace {
+
+/// Reference speeds at which what is given in a table has a say of its own.
+std::vector<std::vector<double>> rows_of_tables(const model::Model& m) {
+  std::vector<std::vector<double>> out;
+  const auto add = [&](std::size_t shaft, std::vector<double> rows) {
+    const double ratio = m.shafts[shaft].speed_ratio;
+    if (ratio == 0.0) return;
+    for (double& row : rows)
+      row /= ratio;
+    out.push_back(std::move(rows));
+  };
+  for (const model::Bearing& b : m.bearings)
+    if (const auto* table = std::get_if<model::TableBearing>(&b.law)) add(b.at.shaft, table->speed);
+  for (const model::Drive& d : m.drives) {
+    const auto* curve = std::get_if<model::TorqueCurve>(&d.law);
+    if (!curve) continue;
+    std::vector<double> between;  // where its slope, which drives, is that of a stretch
+    for (std::size_t k = 1; k < curve->speed.size(); ++k)
+      between.push_back(0.5 * (curve->speed[k - 1] + curve->speed[k]));
+    add(d.at.shaft, std::move(between));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds) {
   WHIRL_EXPECTS(!speeds.empty());
   constexpr std::size_t few = 16;
@@ -190,13 +217,8 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   const double first = *least, last = *most;
   std::vector<double> out{first, 0.5 * (first + last), last};
   if (speeds.size() <= few) out.insert(out.end(), speeds.begin(), speeds.end());
-  for (const model::Bearing& b : job.model.bearings) {
-    const auto* table = std::get_if<model::TableBearing>(&b.law);
-    const double ratio = job.model.shafts[b.at.shaft].speed_ratio;
-    if (!table || ratio == 0.0) continue;
-    std::vector<double> rows;
-    for (const double row : table->speed)
-      if (row / ratio > first && row / ratio < last) rows.push_back(row / ratio);
+  for (std::vector<double> rows : rows_of_tables(job.model)) {
+    std::erase_if(rows, [&](double row) { return !(row > first && row < last); });
     const std::size_t every = (rows.size() + few - 1) / few;
     for (std::size_t k = 0; k < rows.size(); k += every)
       out.push_back(rows[k]);

@@ -104,8 +104,8 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
                     analysis::Motion motion = analysis::Motion::all);
 /// Speeds within those of a response, ascending, at which free motions are looked at: both ends and the
-/// middle; all of them where a deck lists a few; and the rows of tables, between which coefficients have
-/// no say of their own (of many a few, evenly).
+/// middle; all of them where a deck lists a few; the rows of tables of supports, between which coefficients have
+/// no say of their own, and between those of torques (of many a few, evenly).
 std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds);
 
 /// Where motions grow: loads with a moment along a shaft, which can be the cause. "" without one.

@@ -172,6 +172,8 @@ BetweenNodes::Points DeflectedLine::kinks(const meshes::Element& e, const Vec3& 
   BetweenNodes::Points out;
   out.fill(Vec3::Zero());
   std::vector<double> places;
+  // the bend of a bow is none of the crack's, and stands in the cubic
+  if (job_.model.shafts[number_].bow.any()) return out;
   for (const model::Crack& c : job_.model.cracks) {
     const double from = std::max(e.s1, c.at.s), to = std::min(e.s2, c.to ? c.to->s : c.at.s);
     if (c.at.shaft == number_ && from <= to) places.push_back(0.5 * (from + to));

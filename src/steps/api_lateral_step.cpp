@@ -545,13 +545,15 @@ std::pair<WhirlingMode, std::string> SetReport::stability_as_given() {
   law.motion = model::MotionKind::lateral;
   // without seals there is nothing of level 2 to show
   const int shown = machine_.seals.empty() ? 2 : 8;
-  law.modes =
-      std::max(shown, Level1::modes_below(job_, m, part("level_2", law), machine_, law.speed));
+  const Level1::Below below =
+      Level1::modes_below(job_, m, part("level_2", law), machine_, law.speed);
+  law.modes = std::max(shown, below.count);
   const model::Step s = part(machine_.seals.empty() ? "stability" : "level_2", law);
   run::Job sub(m, job_);
   sub.build_for(s);
-  const WhirlingMode least =
+  const WhirlingMode listed =
       least_stable(run_modal_step(sub, s, law), sub.system(), machine_, law.speed);
+  const WhirlingMode least = below.least.grows ? below.least : listed;
   std::string figure;
   if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())
     figure = sub.report.sections.back().figures.front().name;
@@ -584,6 +586,11 @@ void SetReport::execute() {
   find_modes();
   for (const PlacedMode& mode : modes_)
     respond(mode);
+  if (modes_.empty()) {
+    Check none = results::compare("response to unbalance", nan, "-", Check::Rule::none, nan);
+    none.remark = "no undamped mode to place unbalance for: vibration is not judged";
+    add(std::move(none), fmt::format("up to {:.5g} rpm", to_rpm(3 * law_.max_speed)), "", "");
+  }
   judge_criticals();
   judge_stability();
 }

@@ -47,13 +47,13 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
   // on unequal supports the slow modes are nearly straight lines, of either sign by little
   constexpr double backward_below = -0.5;
   const auto lateral = [&](const analysis::WhirlMode& m) {
-    return m.kind == analysis::ModeKind::lateral && m.oscillates() &&
-           moves(system, m.x, machine.shaft, with_it);
+    return m.kind == analysis::ModeKind::lateral && moves(system, m.x, machine.shaft, with_it);
   };
   const analysis::WhirlMode *best = nullptr, *forward = nullptr, *any = nullptr, *growing = nullptr;
   for (const analysis::WhirlMode& m : modes) {
     if (!lateral(m)) continue;
     if (m.growth() > 0 && (!growing || m.log_decrement < growing->log_decrement)) growing = &m;
+    if (!m.oscillates()) continue;
     if (!any || m.frequency < any->frequency) any = &m;
     if (!(m.forwardness > backward_below)) continue;
     if (!forward || m.frequency < forward->frequency) forward = &m;
@@ -78,7 +78,12 @@ Check check_as_given(const model::ApiLateralStep& law, const ApiMachine& machine
     c.source =
         results::source_of(law.standard, law.limits.given, law.limits.source, {"log_decrement"});
   c.figure = figure;
-  if (mode.grows) c.remark = "a motion grows";
+  if (mode.grows)
+    c.remark = std::isinf(mode.log_decrement) ? "a motion diverges" : "a motion grows";
+  if (std::isnan(mode.log_decrement)) {  // nothing that could grow swings
+    c.passed = true;
+    c.remark = "no lateral mode oscillates";
+  }
   return c;
 }
 
@@ -145,7 +150,7 @@ WhirlingMode Level1::at(double q, bool whatever_grows) {
   o.count = 0;  // all that are slower than the rotor
   o.max_frequency = machine_.ratio * speed;
   o.motion = analysis::Motion::lateral;
-  o.judge = whatever_grows;
+  o.judge = o.real_roots = whatever_grows;
   analysis::SpectrumCertificate certificate;
   WhirlingMode found = least_stable(analysis::whirl_modes(linear, speed, o, &certificate),
                                     built.system, machine_, speed);
@@ -157,15 +162,22 @@ WhirlingMode Level1::at(double q, bool whatever_grows) {
   return least_stable(analysis::whirl_modes(linear, speed, o), built.system, machine_, speed);
 }
 
-int Level1::modes_below(const run::Job& parent, const model::Model& m, const model::Step& step,
-                        const ApiMachine& machine, double speed) {
+Level1::Below Level1::modes_below(const run::Job& parent, const model::Model& m,
+                                  const model::Step& step, const ApiMachine& machine,
+                                  double speed) {
   run::Job job(m, parent);
   results::FrequencyStep s(job, step, "modal", "modes slower than the rotor", speed);
   analysis::ModesOptions o;
   o.count = 0;
   o.max_frequency = machine.ratio * speed;
   o.motion = analysis::Motion::lateral;
-  return static_cast<int>(analysis::whirl_modes(s.linear, speed, o).size());
+  o.judge = o.real_roots = true;
+  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(s.linear, speed, o);
+  const auto slower = [&](const analysis::WhirlMode& w) {
+    return w.frequency > 0 && w.frequency <= o.max_frequency;
+  };
+  return {static_cast<int>(std::count_if(modes.begin(), modes.end(), slower)),
+          least_stable(modes, job.system(), machine, speed)};
 }
 
 Level1::Curve Level1::find_curve() {

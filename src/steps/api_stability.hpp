@@ -37,9 +37,14 @@ class Level1 {
   std::vector<results::Check> judge(const std::optional<WhirlingMode>& with_seals,
                                     const std::string& seals_figure);
   run::Job& job() { return *sub_; }
-  /// Number of lateral modes slower than the rotor at a speed of the reference.
-  static int modes_below(const run::Job& parent, const model::Model& m, const model::Step& step,
-                         const ApiMachine& machine, double speed);
+  /// Lateral modes slower than the rotor at a speed of the reference: their number, and of them and of all
+  /// that grows, swinging or not, the least stable.
+  struct Below {
+    int count = 0;
+    WhirlingMode least;
+  };
+  static Below modes_below(const run::Job& parent, const model::Model& m, const model::Step& step,
+                           const ApiMachine& machine, double speed);
 
  private:
   /// The cross-coupled stiffness at which the mode no longer decays; nan: more than ten times the

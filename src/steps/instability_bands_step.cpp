@@ -136,13 +136,16 @@ void turn_back(BandResult& r, double sense) {
 
 /// What is known of the motions at the speeds looked at.
 std::string counts_of(const BandResult& r) {
+  const std::string between =
+      r.sought_between ? ""
+                       : "; bands between them are not looked for: a table of frequencies ends";
   if (r.complete())
     return fmt::format(
-        "certified at {} speeds: roots counted up to {:.5g} Hz in axes that turn with "
-        "the rotor",
-        r.counted, to_hz(r.counted_to));
-  return fmt::format("not certified: at {} of {} speeds eigenvalues were searched for, not counted",
-                     r.uncounted, r.counted + r.uncounted);
+        "certified at {} speeds: roots counted up to {:.5g} Hz in axes that turn with the rotor{}",
+        r.counted, to_hz(r.counted_to), between);
+  return fmt::format(
+      "not certified: at {} of {} speeds eigenvalues were searched for, not counted{}", r.uncounted,
+      r.counted + r.uncounted, between);
 }
 
 void add_band_table(results::FrequencyStep& s, const BandResult& r) {

@@ -235,6 +235,7 @@ class SpeedSweep {
   int unstable_ = 0;
   bool judges_ = true;  ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
+  int drifted_ = 0;                   ///< of them: Newton's method found none that attracts
   results::StaticAccuracy accuracy_;  ///< the largest error
   int mesh_judged_ = 0, mesh_not_judged_ = 0;
   std::string missing_;  ///< speeds without an equilibrium
@@ -248,6 +249,7 @@ void SpeedSweep::take(double Omega) {
     return miss(Omega, e);
   }
   run::StepState state{s_.linear.equilibrium().state, Omega, {}};
+  if (s_.linear.equilibrium().drifted) ++drifted_;
   judge(Omega, state);
   if (found_++ == 0)
     run::warn_of_closed_contacts(job_, step_, results::equilibrium_at(Omega), state.state);
@@ -331,6 +333,7 @@ void SpeedSweep::show_equilibria() {
   v["unstable equilibria"] = unstable_;
   v["speeds"] = static_cast<int>(speeds_.size());
   v["equilibria"] = static_cast<int>(found_);
+  if (drifted_ > 0) v["reached as motions without inertia"] = drifted_;
   s_.add_table("equilibria", std::move(judged_), unstable_ > 0);
   s_.section.text = fmt::format(
       "Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.",
@@ -423,8 +426,8 @@ void SpeedSweep::execute() {
   report_mesh();
   show_equilibria();
   show_bearings();
-  const std::string judgement =
-      unstable_ == 0 ? "" : fmt::format(", {} of them unstable", unstable_);
+  std::string judgement = unstable_ == 0 ? "" : fmt::format(", {} of them unstable", unstable_);
+  if (drifted_ > 0) judgement += fmt::format(", {} reached as motions without inertia", drifted_);
   s_.finish(fmt::format("equilibria at {} speeds{}{}", found_, judgement,
                         missing_.empty() ? "" : fmt::format(", none at {} rpm", missing_)));
 }

@@ -21,6 +21,9 @@ namespace whirl::steps {
 
 namespace {
 
+constexpr const char* drifted =
+    ", reached as a motion without inertia (Newton's method found none that attracts)";
+
 analysis::LoadPathOptions path_options(const run::Job& job, const model::LoadPath& p,
                                        const analysis::EquilibriumOptions& e) {
   analysis::LoadPathOptions o;
@@ -301,9 +304,10 @@ void StaticRun::write_tables() {
 void StaticRun::say_end(const RunTime& time) const {
   const std::string kind =
       tangent_.stable() ? "equilibrium" : results::stability_line(tangent_, 0.0);
-  const std::string ended = path_ ? notes_.front()
-                                  : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind,
-                                                to_rpm(state_.speed), found_.iterations);
+  const std::string ended =
+      path_ ? notes_.front()
+            : fmt::format("{} at {:.0f} rpm, {} Newton iterations{}", kind, to_rpm(state_.speed),
+                          found_.iterations, found_.drifted ? drifted : "");
   run::ProgressLine(step_.name, job_.options.quiet)
       .done(fmt::format("{}, {}{}", ended,
                         tangent_.judged ? "" : results::left_to_controllers + ", ", time.text()));
@@ -317,6 +321,7 @@ void StaticRun::add_section() {
       fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.",
                   to_rpm(state_.speed), load_, found_.iterations, found_.load_steps,
                   found_.load_steps == 1 ? "" : "s");
+  if (found_.drifted) section.text += " It was" + std::string(drifted + 1) + ".";
   if (!tangent_.stable())
     section.text +=
         fmt::format("\n\nIt is an {}.", results::stability_line(tangent_, state_.speed));
@@ -367,6 +372,7 @@ void StaticRun::execute() {
   state_.state = found_.state;
   summary()["Newton iterations"] = found_.iterations;
   summary()["load steps"] = found_.load_steps;
+  if (found_.drifted) summary()["reached as a motion without inertia"] = true;
   evaluate();
   judge();
   judge_mesh();

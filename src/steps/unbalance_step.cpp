@@ -418,54 +418,81 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   return said;
 }
 
-/// Lightly damped critical speeds nearer to the operating range than their margin that no peak stands for (W17).
+/// What the separation margins leave out.
+struct Unshown {
+  int criticals = 0;
+  std::string list;     ///< of them
+  std::string unknown;  ///< why there may be more; empty: there are none
+};
+
+/// Lightly damped critical speeds nearer to the operating range than their margin that no peak of this order
+/// stands for, as far as the supports are known.
+void find_unshown(results::FrequencyStep& s, CriticalMarginOptions o,
+                  const UnbalanceResponse& response, Unshown& out) {
+  analysis::Linearizer linear(s.linear);
+  analysis::SpectrumCertificate certificate;
+  std::vector<CriticalMargin> found;
+  try {
+    found = critical_margins(linear, o, &certificate);
+  } catch (const Error&) {  // beyond speeds that its supports are known at
+    o.min_speed = std::max(o.min_speed, response.points.front().Omega);
+    o.max_speed = std::min(o.max_speed, response.points.back().Omega);
+    try {
+      if (o.max_speed > o.min_speed) found = critical_margins(linear, o, &certificate);
+      out.unknown = fmt::format("critical speeds are looked for from {:.6g} to {:.6g} rpm only",
+                                to_rpm(o.min_speed), to_rpm(o.max_speed));
+    } catch (const Error& e) {
+      out.unknown = "critical speeds are not known: " + e.diagnostics().front().message;
+    }
+  }
+  if (out.unknown.empty() && !certificate.complete())
+    out.unknown = "the list of critical speeds may not be complete";
+  for (const CriticalMargin& m : found) {
+    if (m.passed()) continue;
+    ++out.criticals;
+    out.list += fmt::format("{}{:.6g} rpm ({}, amplification {:.3g}: {:.1f} % of {:.1f} %)",
+                            out.list.empty() ? "" : ", ", to_rpm(m.critical.speed),
+                            results::direction_text(m.critical.mode), m.critical.amplification(),
+                            100 * m.actual, 100 * m.required);
+  }
+}
+
+/// W17: critical speeds that the separation margins leave out.
 void warn_of_unshown_criticals(results::FrequencyStep& s, const UnbalanceResponse& r,
                                const std::vector<analysis::ResponseProbe>& probes,
                                const std::vector<analysis::ResponsePeak>& peaks,
                                const model::UnbalanceStep& law) {
-  const bool backwards = r.points.back().Omega <= 0.0;
-  if (!(law.operating[1] > 0) || backwards) return;
+  if (!(law.operating[1] > 0)) return;
+  if (r.points.back().Omega <= 0.0) {
+    s.assume(
+        "critical speeds that no peak stands for are not looked for where the rotor runs "
+        "backwards");
+    return;
+  }
   // no margin is wider
   constexpr double below = 0.17, above = 0.27;
-  int unshown = 0;
-  std::string list;
+  Unshown unshown;
   for (std::size_t k = 0; k < r.orders.size(); ++k) {
     CriticalMarginOptions o;
     o.order = r.orders[k];
     o.range = {law.operating[0], law.operating[1]};
+    o.min_speed = (1.0 - below) * law.operating[0];
+    o.max_speed = (1.0 + above) * law.operating[1];
     o.threads = s.job.options.jobs;
     for (const analysis::MarginRow& m : analysis::separation_margins(peaks, probes, o.range, k))
       if (!m.critically_damped) o.peaks.push_back(m.speed);
-    o.min_speed = (1.0 - below) * law.operating[0];
-    o.max_speed = (1.0 + above) * law.operating[1];
-    std::vector<CriticalMargin> found;
-    try {
-      found = critical_margins(s.linear, o);
-    } catch (const Error&) {  // beyond the speeds that its supports are known at
-      o.min_speed = std::max(o.min_speed, r.points.front().Omega);
-      o.max_speed = std::min(o.max_speed, r.points.back().Omega);
-      if (!(o.max_speed > o.min_speed)) continue;
-      found = critical_margins(s.linear, o);
-    }
-    for (const CriticalMargin& m : found) {
-      if (m.passed()) continue;
-      ++unshown;
-      list += fmt::format("{}{:.6g} rpm ({}, amplification {:.3g}: {:.1f} % of {:.1f} %)",
-                          list.empty() ? "" : ", ", to_rpm(m.critical.speed),
-                          results::direction_text(m.critical.mode), m.critical.amplification(),
-                          100 * m.actual, 100 * m.required);
-    }
+    find_unshown(s, std::move(o), r, unshown);
   }
-  s.summary()["critical speeds that no peak stands for"] = unshown;
-  if (unshown == 0) return;
+  s.summary()["critical speeds that no peak stands for"] = unshown.criticals;
+  if (!unshown.unknown.empty()) s.assume("separation margins: " + unshown.unknown);
+  if (unshown.criticals == 0) return;
   Diagnostic d;
   d.code = "W17";
   d.message = fmt::format(
       "step '{}': separation margins leave out {} critical speed{} that no peak of the response "
-      "from {:.6g} to "
-      "{:.6g} rpm stands for: {}",
-      s.step.name, unshown, unshown > 1 ? "s" : "", to_rpm(r.points.front().Omega),
-      to_rpm(r.points.back().Omega), list);
+      "from {:.6g} to {:.6g} rpm stands for: {}",
+      s.step.name, unshown.criticals, unshown.criticals > 1 ? "s" : "",
+      to_rpm(r.points.front().Omega), to_rpm(r.points.back().Omega), unshown.list);
   d.hint = "speeds beyond it, unbalance that drives it, a probe that sees it";
   results::warn(s.job, std::move(d));
 }

@@ -16,7 +16,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdio>
 #include <numeric>
 
 namespace whirl::sweep {
@@ -455,7 +454,7 @@ Probability probability_beyond(const std::vector<double>& values,
   }
   const double all = static_cast<double>(values.size());
   p.least = p.value / all;
-  p.most = (p.value + unknown) / all;
+  p.most = std::min(1.0, (p.value + unknown) / all);
   if (n == 0) {
     p.value = p.error = nan;
     return p;

@@ -227,6 +227,9 @@ operating_speed = ["950 rpm", "1000 rpm"]
   ASSERT_EQ(grows.exit, 0) << grows.log;
   EXPECT_EQ(result_of(grows, "torsional stability"), "FAILED") << grows.log;
   EXPECT_TRUE(grows.says("W13")) << grows.log;
+  // a stretch between the ends and the middle of the operating speeds
+  const DeckRun within(deck("[[0, 100], [955, 100], [965, 120], [2000, 120]]"));
+  EXPECT_EQ(result_of(within, "torsional stability"), "FAILED") << within.log;
   const DeckRun decays(deck("[[0, 160], [900, 160], [1100, 100], [2000, 100]]"));
   EXPECT_EQ(result_of(decays, "torsional stability"), "") << decays.log;
   EXPECT_FALSE(decays.says("W13")) << decays.log;
@@ -240,7 +243,19 @@ TEST(ApiVerdicts, StraightLinesAreNoBackwardWhirl) {
                               api("\"7200 rpm\", \"8000 rpm\"", "seals = [\"seal\"]\n" + stage)));
   ASSERT_EQ(r.exit, 0) << r.log;
   const whirl::io::Value summary = r.summary("api");
-  for (const whirl::io::Value& c : summary.at("compliance").items())
-    if (c.at("check").text() == "level 2: log decrement")
-      EXPECT_NE(c.at("where").text().find("49.9"), std::string::npos) << r.log;
+  for (const whirl::io::Value& c : summary.at("compliance").items()) {
+    if (c.at("check").text() != "level 2: log decrement") continue;
+    EXPECT_NE(c.at("where").text().find("49.9"), std::string::npos) << r.log;
+  }
+}
+
+// Negative stiffness between the bearings: the rotor leaves its place without a swing.
+TEST(ApiVerdicts, WhatDivergesFails) {
+  const DeckRun r(
+      machine(linear("3e7", "3e7", "2e4", "2e4"),
+              "[[bearing]]\nname = \"pull\"\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"-9e7 "
+              "N/m\"\nkzz = \"-9e7 N/m\"\n" +
+                  api("\"7000 rpm\", \"9000 rpm\"", "bearings = [\"DE\", \"NDE\"]\n")));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "log decrement"), "FAILED") << r.log;
 }

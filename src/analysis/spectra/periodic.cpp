@@ -817,15 +817,19 @@ InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& sam
 
 /// Parametric and combination resonances between the speeds looked at: those at which something grows
 /// near one of the two motions are looked at as the others are.
-void visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense,
+/// Whether they could be.
+bool visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense,
                       std::vector<Visited>& samples) {
   std::vector<double> speeds;
   for (const Visited& v : samples)
     speeds.push_back(v.speed);
-  for (const Resonance& r : axes.resonances(speeds, sense))
+  const auto resonances = axes.resonances(speeds, sense);
+  if (!resonances) return false;
+  for (const Resonance& r : *resonances)
     if (search.grows_near(r.speed, r.frequency)) samples.push_back(search.visit(r.speed));
   std::sort(samples.begin(), samples.end(),
             [](const Visited& x, const Visited& y) { return x.speed < y.speed; });
+  return true;
 }
 
 /// Two motions that have bands of their own, at their critical speeds, have one together halfway between
@@ -889,7 +893,7 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
       o.progress(static_cast<double>(samples.size()) / static_cast<double>(speeds.size()), Omega);
     samples.push_back(search.visit(Omega));
   }
-  if (!axes.constant()) visit_resonances(search, axes, o.sense, samples);
+  if (!axes.constant()) out.sought_between = visit_resonances(search, axes, o.sense, samples);
   for (const Visited& v : samples) {
     out.speeds.push_back(v.speed);
     out.growth.push_back(v.growth.rate);

@@ -18,6 +18,7 @@
 #pragma once
 #include <analysis/linearizer.hpp>
 #include <functional>
+#include <optional>
 
 namespace whirl::analysis {
 
@@ -63,9 +64,10 @@ class RotatingAxes {
   bool turning() const { return turning_; }
   /// Speeds between the first and the last at which two natural frequencies of the mean matrices, in fixed
   /// axes, add up to a multiple of the speed of the axes or differ by one, ascending; each frequency between
-  /// the speeds by straight lines.
+  /// the speeds by straight lines, of the six slowest motions. Nothing: a table of supports ends below them.
   /// @pre ascending speeds; sense: as of BandOptions.
-  std::vector<Resonance> resonances(const std::vector<double>& speeds, double sense) const;
+  std::optional<std::vector<Resonance>> resonances(const std::vector<double>& speeds,
+                                                   double sense) const;
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
   double constant_share(const VecXc& x) const;
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
@@ -146,6 +148,8 @@ struct BandResult {
   std::vector<double> speeds, growth,
       frequency;  ///< largest real part (1/s) of the motions, and its frequency in rotating axes
   std::vector<InstabilityBand> bands;
+  /// Parametric and combination resonances between the speeds were looked for, where there can be any.
+  bool sought_between = true;
   Index evaluations = 0;  ///< speeds looked at on the way, edges and maxima included
   /// Speeds at which the motions were counted too, by an independent method, and at which not.
   Index counted = 0, uncounted = 0;

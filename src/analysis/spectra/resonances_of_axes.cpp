@@ -4,6 +4,7 @@
 #include <analysis/spectra/periodic.hpp>
 
 #include <analysis/spectra/whirl_modes.hpp>
+#include <core/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,13 @@ std::vector<Frequencies> frequencies_at(Linearizer& linear, const std::vector<do
   std::vector<Frequencies> out;
   for (const double Omega : speeds) {
     Frequencies f{Omega, {}};
-    for (const WhirlMode& m : solver.solve(sense * Omega))
-      f.w.push_back(m.frequency);
+    try {
+      for (const WhirlMode& m : solver.solve(sense * Omega))
+        f.w.push_back(m.frequency);
+    } catch (const Error& e) {
+      // a table of frequencies ends below one of them: none is known here
+      if (e.diagnostics().front().code != "E81") throw;
+    }
     out.push_back(std::move(f));
   }
   return out;
@@ -50,12 +56,14 @@ std::vector<double> with_more(std::vector<double> speeds) {
 
 }  // namespace
 
-std::vector<Resonance> RotatingAxes::resonances(const std::vector<double>& speeds,
-                                                double sense) const {
+std::optional<std::vector<Resonance>> RotatingAxes::resonances(const std::vector<double>& speeds,
+                                                               double sense) const {
   std::vector<Resonance> out;
   if (speeds.size() < 2 || !(speeds.back() > speeds.front())) return out;
   Linearizer linear(linear_);
   const std::vector<Frequencies> known = frequencies_at(linear, with_more(speeds), sense);
+  if (std::any_of(known.begin(), known.end(), [](const Frequencies& f) { return f.w.empty(); }))
+    return std::nullopt;
   const double ratio = std::abs(ratio_);
   const auto look = [&](const Frequencies& a, const Frequencies& b, std::size_t i, std::size_t j,
                         double sign, double multiple) {
@@ -83,11 +91,15 @@ std::vector<Resonance> RotatingAxes::resonances(const std::vector<double>& speed
             [](const Resonance& x, const Resonance& y) { return x.speed < y.speed; });
   // bands as narrow as the distance of two that count as one hardly grow
   constexpr double apart = 1e-3;
-  const auto one = [](const Resonance& x, const Resonance& y) {
-    return y.speed - x.speed < apart * y.speed;
-  };
-  out.erase(std::unique(out.begin(), out.end(), one), out.end());
-  return out;
+  std::vector<Resonance> kept;
+  for (const Resonance& x : out) {
+    const bool before = std::any_of(kept.rbegin(), kept.rend(), [&](const Resonance& y) {
+      return x.speed - y.speed < apart * x.speed &&
+             std::abs(x.frequency - y.frequency) < apart * ratio * x.speed;
+    });
+    if (!before) kept.push_back(x);
+  }
+  return kept;
 }
 
 }  // namespace whirl::analysis

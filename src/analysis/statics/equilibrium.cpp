@@ -574,13 +574,12 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
     s = begin;
     o = close_gaps(Omega, s, out.iterations);
   }
-  const bool directly = o == Outcome::converged;
-  const bool found = directly || load_in_steps(Omega, begin.t, out);
-  // What was found on a way round a bend, or among pads that balance themselves, may repel.
-  const bool doubtful = !directly || sys.relaxes();
-  if ((!found || (doubtful && !attracts(Omega, s))) && !drift_from(begin, Omega, found, out) &&
-      !found)
-    return std::nullopt;
+  const bool found = o == Outcome::converged || load_in_steps(Omega, begin.t, out);
+  // Among pads that balance themselves there are equilibria that repel beside those that attract.
+  if (!found || (sys.relaxes() && !attracts(Omega, s))) {
+    out.drifted = drift_from(begin, Omega, found, out);
+    if (!found && !out.drifted) return std::nullopt;
+  }
   if (!spin_holds_.empty()) close_backlash(Omega, s, out.iterations);
   if (options_.chart_change) change_charts(s);
   sys.follow(s);

@@ -43,6 +43,8 @@ struct Equilibrium {
   /// Both.
   std::vector<Index> holds() const;
   int iterations = 0, load_steps = 1;
+  bool drifted =
+      false;  ///< reached as a motion without inertia: Newton's method found none that attracts
   double kept_error =
       0;  ///< what elements keep (system::Frames::kept) still changes by, the largest
 };

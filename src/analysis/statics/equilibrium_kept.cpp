@@ -107,6 +107,7 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
                                   sys.keepers().front().name, why_),
                       "a bearing may be beyond its capacity with hot oil: look at it without heat");
     moved->iterations += out.iterations;
+    moved->drifted = moved->drifted || out.drifted;
     const double error = out.kept_error;
     out = std::move(*moved);
     out.kept_error = error;
