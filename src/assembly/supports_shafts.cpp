@@ -33,6 +33,9 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
                wanted = g.pitch_radius *
                         std::abs(1.0 + static_cast<double>(law.other_teeth) / law.teeth);
   const std::string who = name_of(b);
+  // the mesh of an internal gear lies beyond the pinion
+  const double from_places =
+      std::atan2(between.y(), between.x()) + (law.other_teeth < 0 ? pi : 0.0);
   if (std::isnan(law.centre_angle)) {
     if (!(distance > 0)) {
       a.error("E05",
@@ -41,11 +44,17 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
               "give the second shaft its origin, or centre_angle = \"0 deg\"", b, who);
       return;
     }
-    g.centre_angle = std::atan2(between.y(), between.x());
-    if (law.other_teeth < 0)
-      g.centre_angle += pi;  // the mesh of an internal gear lies beyond the pinion
+    g.centre_angle = from_places;
   } else {
     g.centre_angle = law.centre_angle;
+    constexpr double apart = pi / 180;
+    if (distance > 0 && std::abs(std::remainder(g.centre_angle - from_places, two_pi)) > apart) {
+      a.error("E26",
+              fmt::format("{}: centre_angle is {:.5g} deg, the shafts lie at {:.5g} deg", who,
+                          g.centre_angle * 180 / pi, from_places * 180 / pi),
+              "leave it out: the direction follows from the origins of the shafts", b, who);
+      return;
+    }
   }
   if (distance > 0 && std::abs(distance - wanted) > 0.02 * wanted) {
     a.error("E26",

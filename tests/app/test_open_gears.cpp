@@ -7,7 +7,7 @@ using whirl::test::DeckRun;
 
 namespace {
 
-std::string pair_of_shafts(const std::string& torque) {
+std::string pair_of_shafts(const std::string& torque, const std::string& mesh = "") {
   const auto line = [](const char* name, const char* more) {
     return fmt::format(
         "[[shaft]]\nname = \"{}\"\nmaterial = \"steel\"\n{}columns = [\"name\", \"length[mm]\", "
@@ -44,8 +44,8 @@ other_teeth = 40
 pitch_diameter = "100 mm"
 stiffness = "2e8 N/m"
 backlash = "40 um"
-)" + drive("motor", "", "1") +
-         drive("fan", "", "2") + R"([[step]]
+)" + mesh +
+         drive("motor", "", "1") + drive("fan", "", "2") + R"([[step]]
 name = "t"
 type = "torsional"
 modes = 2
@@ -61,4 +61,12 @@ TEST(OpenGears, AreSaid) {
   ASSERT_EQ(closed.exit, 0) << closed.log;
   EXPECT_TRUE(open.says("the teeth of 'mesh' do not touch at the equilibrium")) << open.log;
   EXPECT_FALSE(closed.says("do not touch")) << closed.log;
+}
+
+TEST(OpenGears, MeshWhereTheirShaftsAre) {
+  const DeckRun apart(pair_of_shafts("20", "centre_angle = \"10 deg\"\n"));
+  EXPECT_NE(apart.exit, 0) << apart.log;
+  EXPECT_TRUE(apart.says("centre_angle is 10 deg, the shafts lie at 0 deg")) << apart.log;
+  const DeckRun there(pair_of_shafts("20", "centre_angle = \"360 deg\"\n"));
+  EXPECT_EQ(there.exit, 0) << there.log;
 }

@@ -66,6 +66,11 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
            "the clearance where that is less");
   v.number("rho_inf", o.rho_inf, fraction,
            "spectral radius at infinite frequency, of generalized_alpha");
+  if (v.clean() && o.rho_inf != model::IntegratorOptions{}.rho_inf &&
+      o.method != "generalized_alpha")
+    v.error("E26", "rho_inf",
+            fmt::format("'rho_inf' is of generalized_alpha, the method is {}", o.method),
+            "leave it out, or method = \"generalized_alpha\"");
   const bool fixed =
       v.quantity(optional("dt", "adaptive"), o.dt, "ms", positive, "fixed time step");
   const bool max =
