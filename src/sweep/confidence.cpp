@@ -34,6 +34,32 @@ double most_in_tail(double n, double p) {
 
 }  // namespace
 
+double covered_share(const std::vector<double>& weights) {
+  double sum = 0, squares = 0;
+  for (const double w : weights) {
+    sum += w;
+    squares += w * w;
+  }
+  constexpr double errors = 4;  // of the mean weight, by which it is less once in 30,000 times
+  const auto runs = static_cast<double>(weights.size());
+  const double mean = sum / runs;
+  const double error = std::sqrt(std::max(0.0, squares / runs - mean * mean) / runs);
+  return mean + errors * error < 1 - 1e-9 ? mean : 1.0;  // 1e-9: rounding
+}
+
+bool follows_distributions(const Design& design) {
+  return design.sampling() != Sampling::morris && design.sampling() != Sampling::one_at_a_time;
+}
+
+bool independent_runs(const Plan& plan) {
+  const Design& design = plan.design;
+  const bool spread = design.sampling() == Sampling::random ||
+                      design.sampling() == Sampling::latin_hypercube ||
+                      design.sampling() == Sampling::sobol;
+  return spread && std::all_of(design.factors().begin(), design.factors().end(),
+                               [](const Factor& f) { return f.random(); });
+}
+
 std::string obstacle_to_bounds(const Plan& plan) {
   const Design& design = plan.design;
   if (design.weighted()) return "none: the samples are weighted";

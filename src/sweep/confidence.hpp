@@ -9,6 +9,7 @@
 
 namespace whirl::sweep {
 
+class Design;
 struct Plan;
 
 /// Places among sorted samples, from 0.
@@ -34,6 +35,14 @@ struct QuantileBounds {
 };
 /// Why runs of this plan say nothing of how sure a percentile or a share is; empty: they do.
 std::string obstacle_to_bounds(const Plan& plan);
+/// Whether the points of the scheme lie as the distributions have it: not those of Morris and one at a time.
+bool follows_distributions(const Design& design);
+/// Whether the runs are samples, independent of each other, whose mean has a standard error.
+bool independent_runs(const Plan& plan);
+/// How much of a distribution the samples stand for that were drawn from another one, by the mean of their
+/// weights; 1 where that may be 1. Of the rest nothing is known: there are no means and no quantiles.
+/// @pre at least one weight
+double covered_share(const std::vector<double>& weights);
 /// Between which the probability of something lies with confidence_of_bounds that happened in `count`
 /// of `runs` independent runs. E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
 /// @pre 0 <= count <= runs, runs > 0

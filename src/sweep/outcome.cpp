@@ -88,10 +88,22 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
   return t;
 }
 
+/// What weighted samples do not tell; empty: nothing.
+std::string not_covered(double share) {
+  if (share == 1.0) return "";
+  return fmt::format(
+      "; those drawn stand for {:.2g} of the distribution only: no means, no quantiles, no shares",
+      share);
+}
+
 io::Table statistics_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Responses";
-  t.nan_means = "no run gave a value; of bounds: see the last column";
+  t.nan_means =
+      "no run gave a value, or its scheme has no samples of the distributions; of the error: the "
+      "runs are no independent samples; of bounds, and of "
+      "weighted "
+      "samples: see the last column";
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
                {"runs", "-",
@@ -100,7 +112,7 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
                                        : "that gave a value"},
                {"failed", "-", "runs without a value"},
                {"mean", "-", "in the unit of the response, as all that follow"},
-               {"error of the mean", "-", "standard error, of independent runs"},
+               {"error of the mean", "-", "standard error"},
                {"standard deviation", "-", ""},
                {"least", "-", ""},
                {"5 %", "-", "quantile"},
@@ -114,6 +126,8 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
                {"95 % from", "-", ""},
                {"95 % to", "-", ""},
                {"missing bounds", "-", "why there are none, or not all"}};
+  const double share = covered_share(c.weight);
+  const bool covered = share == 1.0, independent = independent_runs(plan);
   for (std::size_t k = 0; k < plan.responses.size(); ++k) {
     if (!c.words[k].empty()) continue;
     const auto values = finite(c.responses[k]);
@@ -124,14 +138,17 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
       const WeightedStatistics w = weighted_statistics(c.responses[k], c.weight);
       cells[2] = w.runs;
       for (double x : {w.mean, w.error, w.deviation, w.least, w.p05, w.median, w.p95, w.largest})
-        cells.emplace_back(x);
+        cells.emplace_back(covered ? x : nan);
     } else if (values.empty()) {
       for (int i = 0; i < 8; ++i)
         cells.emplace_back(nan);
     } else {
-      const Statistics s = statistics_of(values);
-      for (double x : {s.mean, s.deviation / std::sqrt(static_cast<double>(s.count)), s.deviation,
-                       s.least, s.p05, s.median, s.p95, s.largest})
+      Statistics s = statistics_of(values);
+      const double error =
+          independent ? s.deviation / std::sqrt(static_cast<double>(s.count)) : nan;
+      if (!follows_distributions(plan.design))
+        s.mean = s.deviation = s.p05 = s.median = s.p95 = nan;
+      for (double x : {s.mean, error, s.deviation, s.least, s.p05, s.median, s.p95, s.largest})
         cells.emplace_back(x);
     }
     const QuantileBounds bounds = bounds_of_response(plan, values);
@@ -139,7 +156,7 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
       cells.emplace_back(interval ? interval->low : nan);
       cells.emplace_back(interval ? interval->high : nan);
     }
-    cells.emplace_back(bounds.missing);
+    cells.emplace_back(bounds.missing + not_covered(share));
     t.add(std::move(cells));
   }
   return t;
@@ -219,11 +236,15 @@ std::string uncovered_text(const Plan& plan, const Columns& c) {
 io::Table probabilities_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Probabilities";
-  t.nan_means = "no run gave a value; an error: none of weighted samples lies there";
+  t.nan_means =
+      "no run gave a value; an error: none of weighted samples lies there, or the runs are no "
+      "independent "
+      "samples";
+  const bool independent = independent_runs(plan);
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
                {"beyond", "-", ""},
-               {"probability", "-", "of independent runs that gave a value"},
+               {"probability", "-", "of the runs that gave a value"},
                {"error", "-", "standard error; of none or all, what they leave open at 95 %"},
                {"runs", "-", "that lie there"},
                {"runs without a value", "-", ""},
@@ -233,8 +254,9 @@ io::Table probabilities_table(const Plan& plan, const Columns& c) {
     const Probability p =
         probability_beyond(c.responses[limit.response], c.weight, limit.value, limit.above);
     t.add({plan.responses[limit.response].name, c.units[limit.response],
-           fmt::format("{} {:.6g}", limit.above ? ">" : "<", limit.value), p.value, p.error,
-           static_cast<double>(p.runs), static_cast<double>(p.without), p.least, p.most});
+           fmt::format("{} {:.6g}", limit.above ? ">" : "<", limit.value), p.value,
+           independent ? p.error : nan, static_cast<double>(p.runs), static_cast<double>(p.without),
+           p.least, p.most});
   }
   return t;
 }
@@ -581,6 +603,8 @@ void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& optio
     std::fputs(io::to_json(summary).c_str(), stdout);
   else if (!options.run.quiet)
     print_statistics(statistics);
+  if (const double share = covered_share(c.weight); share < 1.0 && !options.run.quiet)
+    std::fputs(fmt::format("weighted samples{}\n", not_covered(share)).c_str(), stderr);
   if (!options.run.json && !options.run.quiet) print_words(words);
 }
 

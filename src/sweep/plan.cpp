@@ -1,3 +1,4 @@
+#include <sweep/confidence.hpp>
 #include <sweep/plan.hpp>
 #include <core/error.hpp>
 #include <core/version.hpp>
@@ -233,6 +234,13 @@ Plan make_plan(const SweepOptions& o, const model::Model& model) {
     correlations.push_back(read_correlation(text));
   plan.design = Design(std::move(factors), o.samples.value_or(1), sampling_of(o.sampling),
                        o.seed.value_or(1), correlations);
+  if (!plan.limits.empty() && !follows_distributions(plan.design))
+    throw refusal(
+        fmt::format(
+            "--exceed asks for a probability, and the points of --sampling {} do not lie as "
+            "the distributions have it",
+            o.sampling),
+        "--sampling random, lhs, sobol or saltelli");
   plan.shard = read_shard(o.shard);
   plan.root = o.run.output.empty() ? std::filesystem::path(model.output.directory + "_sweep")
                                    : o.run.output;

@@ -26,9 +26,10 @@ std::vector<WordShare> shares_of(const Plan& plan, const Columns& c, std::size_t
     weights += c.weight[k];
   }
   const bool bounded = obstacle_to_bounds(plan).empty();
+  const bool covered = covered_share(c.weight) == 1.0;
   std::vector<WordShare> out;
   for (auto& [word, w] : found) {
-    w.share = weights > 0 ? w.share / weights : nan;
+    w.share = weights > 0 && covered ? w.share / weights : nan;
     const Interval bounds =
         bounded ? bounds_of_share(static_cast<double>(w.runs), runs) : Interval{nan, nan};
     w.from = bounds.low;

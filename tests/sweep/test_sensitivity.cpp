@@ -1,4 +1,5 @@
 // Schemes of sensitivity against functions whose indices and effects are known.
+#include <sweep/confidence.hpp>
 #include <sweep/design.hpp>
 #include <sweep/outcome.hpp>
 #include <sweep/sampling.hpp>
@@ -180,6 +181,21 @@ TEST(WeightedSamples, OfEqualWeightAreOrdinaryOnes) {
     EXPECT_NEAR(std::pow(1 - sure.error, 5), 0.05, 1e-12);
   }
   EXPECT_TRUE(std::isnan(probability_beyond(x, std::vector<double>(6, 0.5), 9, true).error));
+}
+
+// Of N(0, 1), drawn from N(4, 1.2): the weights of 3,000 samples come to a tenth of what they are in the mean.
+TEST(WeightedSamples, SayHowMuchOfTheDistributionTheyStandFor) {
+  const auto share_of = [](const char* law) {
+    const Design design({read_factor(law)}, 3000, Sampling::random, 1);
+    std::vector<double> weights;
+    for (std::int64_t run = 0; run < design.runs(); ++run)
+      weights.push_back(design.weight(run));
+    return covered_share(weights);
+  };
+  EXPECT_LT(share_of("a.x=normal(0, 1) drawn normal(4, 1.2)"), 0.5);
+  EXPECT_EQ(share_of("a.x=normal(0, 1) drawn normal(1, 1.5)"), 1.0);
+  EXPECT_EQ(share_of("a.x=normal(0, 1) drawn uniform(-6, 6)"), 1.0);
+  EXPECT_EQ(share_of("a.x=normal(0, 1)"), 1.0);
 }
 
 TEST(Densities, IntegrateToOneOverTheirQuantiles) {
