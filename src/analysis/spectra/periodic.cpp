@@ -820,9 +820,9 @@ InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& sam
 /// Whether they could be.
 bool visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense,
                       std::vector<Visited>& samples) {
-  std::vector<double> speeds;
-  for (const Visited& v : samples)
-    speeds.push_back(v.speed);
+  std::vector<double> speeds(samples.size());
+  std::transform(samples.begin(), samples.end(), speeds.begin(),
+                 [](const Visited& v) { return v.speed; });
   const auto resonances = axes.resonances(speeds, sense);
   if (!resonances) return false;
   for (const Resonance& r : *resonances)
