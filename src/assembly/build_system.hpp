@@ -63,7 +63,8 @@ struct TiltingPads {
   std::size_t bearing = 0;     ///< of the model
   std::vector<double> pivots;  ///< rad, one a pad
   std::vector<std::vector<Index>>
-      unknowns;  ///< scalar nodes of each pad: tilt, pressed if it gives
+      unknowns;               ///< scalar nodes of each pad: tilt, pressed if it gives
+  std::vector<bool> follows;  ///< an elastic pivot without mass: it follows the film at once
   std::function<std::vector<elements::PadStanding>(const NodeAt&)> standing;
   /// The face of a pad as it stands, for pictures.
   struct Face {

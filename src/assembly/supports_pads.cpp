@@ -341,8 +341,10 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     add_momentary_pads(a, b, n, ring);
   TiltingPads pads;
   pads.bearing = number_of(a, b);
-  for (const auto& p : law.pads())
+  for (const auto& p : law.pads()) {
     pads.pivots.push_back(p.pivot);
+    pads.follows.push_back(!p.rigid_pivot() && p.mass == 0.0);
+  }
   pads.unknowns = ring->moving();
   pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };
   pads.faces = [ring](const NodeAt& at) { return ring->faces(at); };

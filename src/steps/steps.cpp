@@ -247,6 +247,19 @@ void add_hint_of_films(const run::Job& job, Diagnostic& d) {
       d.hint;
 }
 
+/// Pads that have no equation of motion while their films are dry.
+void add_hint_of_pivots(const run::Job& job, Diagnostic& d) {
+  if (d.code != "N20" && d.code != "R10") return;
+  for (const assembly::TiltingPads& pads : job.built.tilting_pads)
+    if (std::find(pads.follows.begin(), pads.follows.end(), true) != pads.follows.end()) {
+      d.hint = fmt::format(
+          "pads of bearing '{}' have elastic pivots without mass, and follow nothing while their "
+          "films are dry: give them mass, or pivot_damping; else {}",
+          job.model.bearings[pads.bearing].name, d.hint);
+      return;
+    }
+}
+
 /// What failed while a step ran, with the step it failed in.
 Error in_step(const run::Job& job, const std::string& name, const Error& e) {
   const auto step = std::find_if(job.model.steps.begin(), job.model.steps.end(),
@@ -256,6 +269,7 @@ Error in_step(const run::Job& job, const std::string& name, const Error& e) {
     if (d.message.find("step '") == std::string::npos)
       d.message = fmt::format("step '{}': {}", name, d.message);
     add_hint_of_films(job, d);
+    add_hint_of_pivots(job, d);
     if (step == job.model.steps.end() || d.code != "E81") continue;
     const std::string bearings = bearings_at(job, d.where.entity);
     if (!bearings.empty()) d.message += ", at bearing " + bearings;
