@@ -583,7 +583,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "revolution, of a crack that of its compliance; a step at 0 rpm alone takes them at the "
        "angle at which the rotor lies. In truth unbalance meets two critical speeds, one a "
        "principal plane, and between them the rotor bends out: an unbalance response and a "
-       "stability step are computed in axes that turn with the shaft and show both.",
+       "stability step are computed in axes that turn with the shaft and show both. Gears whose "
+       "stiffness changes with their teeth, and rolling bearings, enter with their mean: where the "
+       "frequency at which teeth or rolling elements pass, or a multiple of it, is the sum of two "
+       "natural frequencies, motion may grow that linear analyses do not see, and a transient "
+       "does.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W15", "a response that is not refined",
        "The points of a response over a range are made finer about natural frequencies or critical "

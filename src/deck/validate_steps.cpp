@@ -24,16 +24,42 @@ bool turns_with_stiffness(const model::Shaft& s) {
                      [](const model::Section& x) { return model::is_unequal(x, unequal); });
 }
 
-/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times
-/// between.
-bool is_constant(const Law& law, double duration) {
+/// Times that a transient step can have, s.
+struct Span {
+  double from = 0, to = 0;
+};
+Span span_of(const model::Model& m, const model::Step& step) {
+  const auto duration = [](const model::Step& s) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    return t ? t->duration : 0.0;
+  };
+  Span out{0.0, duration(step)};
+  std::string before = step.from;
+  for (std::size_t k = 0; k < m.steps.size() && !before.empty(); ++k) {  // no more than there are
+    const auto it = std::find_if(m.steps.begin(), m.steps.end(),
+                                 [&](const model::Step& s) { return s.name == before; });
+    if (it == m.steps.end()) break;
+    out.from += duration(*it);
+    out.to += duration(*it);
+    before = it->from;
+  }
+  if (!m.events.empty()) out.from = 0.0;  // a step may end early
+  return out;
+}
+
+/// A law has one value in a span: looked at where it may change and 1000 times between.
+bool is_constant(const Law& law, const Span& span) {
   std::vector<double> times = law.breakpoints();
   for (int i = 0; i <= 1000; ++i)
-    times.push_back(duration * i / 1000);
-  const double first = law.at(0.0).f;
+    times.push_back(span.from + (span.to - span.from) * i / 1000);
+  const double first = law.at(span.from).f;
   return std::none_of(times.begin(), times.end(), [&](double t) {
-    return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first);
+    return t >= span.from && t <= span.to && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first);
   });
+}
+
+bool varies(const std::vector<double>& harmonics) {
+  return std::any_of(harmonics.begin(), harmonics.end(), [](double x) { return x != 0.0; });
 }
 
 /// Torsion takes part in a step of small motions.
@@ -68,12 +94,29 @@ void check_linear(const model::Model& m, Problems& out) {
       if (turns_with_stiffness(shaft))
         say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name),
             "leave linear out of the step");
-    for (const auto& b : m.bearings)
-      if (const auto* coupling = std::get_if<model::Coupling>(&b.law))
-        if (model::is_unequal(*coupling, unequal) && m.shafts[b.at.shaft].rotating)
-          say(fmt::format("the stiffness of coupling '{}' turns with its shafts", b.name),
-              "leave linear out of the step");
-    if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
+    for (const auto& b : m.bearings) {
+      const auto* coupling = std::get_if<model::Coupling>(&b.law);
+      if (coupling && model::is_unequal(*coupling, unequal) && m.shafts[b.at.shaft].rotating)
+        say(fmt::format("the stiffness of coupling '{}' turns with its shafts", b.name),
+            "leave linear out of the step");
+      const auto range = speeds_of(m, s, b.at.shaft);
+      const bool stands = range && range->first == 0 && range->second == 0;
+      const bool passes = m.shafts[b.at.shaft].rotating && !stands;
+      const auto* gears = std::get_if<model::GearPair>(&b.law);
+      if (gears && varies(gears->stiffness_harmonics) && passes)
+        say(fmt::format("the stiffness of gears '{}' changes with their teeth", b.name),
+            "leave linear out of the step, or stiffness_harmonics out of the gears");
+      if (*model::traits_of(b.law).rolling && passes)
+        say(fmt::format("the stiffness of bearing '{}' changes as its rolling elements pass",
+                        b.name),
+            "leave linear out of the step, or give the bearing coefficients (type = \"linear\")");
+      const auto* magnets = std::get_if<model::MagneticBearing>(&b.law);
+      if (magnets && magnets->power && !is_constant(*magnets->power, span_of(m, s)))
+        say(fmt::format("the power of magnetic bearing '{}' changes, and the matrices with it",
+                        b.name),
+            "a constant power, or leave linear out of the step");
+    }
+    if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, span_of(m, s)))
       say("the base turns at a rate that changes, and the matrices with it",
           "a constant rate, or leave linear out");
     if (t->integrator.method == "momentum_rk")

@@ -3,6 +3,7 @@
 #include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/study/scheme_damping.hpp>
 #include <assembly/element_section.hpp>
+#include <core/messages.hpp>
 #include <core/rotation.hpp>
 #include <la/block_lu.hpp>
 #include <results/frequency.hpp>
@@ -330,10 +331,11 @@ void AccuracyOutput::judge_twist(TransientEnd& end, std::vector<std::string>& wa
                                ? "try a smaller dt"
                                : "a table 'torques' in the step makes them follow it";
   // beside lateral motion, where nothing asks for torques, steps that pass over it are what is wanted
-  if (s.twists_alone)
-    warnings.push_back(said + ", and nothing else moves: " + cure);
-  else
-    end.section.text += fmt::format("\n\nNote: {}; {}.", said, cure);
+  if (s.twists_alone) return warnings.push_back(said + ", and nothing else moves: " + cure);
+  const std::string note =
+      fmt::format("{}: speeds and torques along shafts are without it; {}", said, cure);
+  end.section.text += fmt::format("\n\nNote: {}.", note);
+  if (!end.job.options.quiet) say(fmt::format("  {}: note: {}\n", end.step.name, note));
 }
 
 /// What the mesh and the steps do to the modes at the end of the run.

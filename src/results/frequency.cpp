@@ -411,10 +411,30 @@ void FrequencyStep::finish(const std::string& line) {
   section.text += fmt::format(" Linearised {}.", about_);
   if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
   warn_of_mean_stiffness();
+  warn_of_passing_parts();
   run::ProgressLine(step.name, job.options.quiet)
       .done(fmt::format("{}{}, {}, {}", line, also_, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
+}
+
+void FrequencyStep::warn_of_passing_parts() {
+  PassingParts parts = passing_parts(job.model);
+  if (type_ != "stability") parts.rolling.clear();
+  if (parts.empty() || stands(step.law)) return;
+  const std::string what = fmt::format(
+      "the stiffness of {} enters as its mean over the teeth or rolling elements that pass; where "
+      "the "
+      "frequency at which they pass, or a multiple of it, is the sum of two natural frequencies, "
+      "motion may "
+      "grow that is not seen here",
+      parts.text());
+  section.text += " " + capital(what) + ".";
+  Diagnostic d;
+  d.code = "W14";
+  d.message = fmt::format("step '{}': {}", step.name, what);
+  d.hint = "a transient follows them";
+  warn(job, std::move(d));
 }
 
 void FrequencyStep::warn_of_mean_stiffness() {
@@ -510,6 +530,30 @@ bool is_judged_in_turning_axes(const model::Model& m) {
     speed = own;
   }
   return true;
+}
+
+std::string PassingParts::text() const {
+  const char* between = gears.empty() || rolling.empty() ? "" : ", ";
+  return rolling + between + gears;
+}
+
+PassingParts passing_parts(const model::Model& m) {
+  PassingParts out;
+  for (const model::Bearing& b : m.bearings) {
+    const model::Shaft& shaft = m.shafts[b.at.shaft];
+    const bool other_turns =
+        b.to && m.shafts[b.to->shaft].rotating && m.shafts[b.to->shaft].speed_ratio != 0;
+    if (!(shaft.rotating && shaft.speed_ratio != 0) && !other_turns) continue;
+    const auto add = [&](std::string& list, const char* noun) {
+      list += fmt::format("{}{} '{}'", list.empty() ? "" : ", ", noun, b.name);
+    };
+    if (*model::traits_of(b.law).rolling) add(out.rolling, "bearing");
+    const auto* gears = std::get_if<model::GearPair>(&b.law);
+    if (!gears) continue;
+    const std::vector<double>& h = gears->stiffness_harmonics;
+    if (std::any_of(h.begin(), h.end(), [](double x) { return x != 0.0; })) add(out.gears, "gears");
+  }
+  return out;
 }
 
 const char* what_turns(const model::Model& m) {

@@ -283,6 +283,10 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                                 : "Neither the rotor nor its supports are isotropic",
                         axes.harmonics());
   std::string known = counts_of(r);
+  if (const results::PassingParts passing = results::passing_parts(job.model); !passing.empty())
+    known +=
+        fmt::format("; of the mean stiffness of {}: growth by what passes in them is not excluded",
+                    passing.text());
   std::string in_short = known;
   known += fmt::format(
       "; bands narrower than the distance of the speeds are found at critical speeds and halfway "

@@ -276,7 +276,8 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   io::Value& v = s.summary();
   const bool unknown = r.stable_at_start && !r.verdicts.front().certificate.stability_certain();
   v["stable at the first speed"] = unknown ? io::Value() : io::Value(r.stable_at_start);
-  v["certified"] = r.certain() && !results::turns_with_inertia(job.model);
+  const results::PassingParts passing = results::passing_parts(job.model);
+  v["certified"] = r.certain() && !results::turns_with_inertia(job.model) && passing.empty();
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
   s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
@@ -290,6 +291,10 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   std::string line = verdict_line(r);
   if (results::turns_with_inertia(job.model))
     line += "; of the mean inertia over a revolution: growth in bands of speed is not excluded";
+  if (!passing.empty())
+    line +=
+        fmt::format("; of the mean stiffness of {}: growth by what passes in them is not excluded",
+                    passing.text());
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + "." + neutral_text(r);
   const std::string moments = results::moments_along_shafts(job.model);

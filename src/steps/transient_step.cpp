@@ -3,6 +3,7 @@
 #include <analysis/transient/linear_motion.hpp>
 #include <analysis/transient/transient.hpp>
 #include <core/interrupt.hpp>
+#include <results/changing_loads.hpp>
 #include <results/held.hpp>
 #include <results/support_coefficients.hpp>
 #include <results/transient_output.hpp>
@@ -122,10 +123,27 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
 
 namespace {
 
+/// Pads whose elastic pivots have no mass follow the film at once: the motion begins with them in balance
+/// with the journal where it is. (From any other place they would get there in no time, which no rate
+/// says.)
+void settle_pivots(const run::Job& job, system::State& s) {
+  std::vector<Index> following;
+  for (const assembly::TiltingPads& pads : job.built.tilting_pads)
+    for (std::size_t k = 0; k < pads.follows.size(); ++k)
+      if (pads.follows[k])
+        following.insert(following.end(), pads.unknowns[k].begin(), pads.unknowns[k].end());
+  if (following.empty()) return;
+  system::Workspace w = job.system().make_workspace();
+  VecX balanced = s.q;
+  job.system().relax(w, s.frames, s.t, balanced, s.v, s.a);
+  for (const Index n : following)
+    s.q[6 * n] = balanced[6 * n];
+}
+
 /// A start that no transient left: settled as the step asks for.
 void settle_start(run::Job& job, run::StepState& start, const model::TransientStep& law) {
   using Start = model::TransientStep::Start;
-  if (law.start == Start::rest) return;
+  if (law.start == Start::rest) return settle_pivots(job, start.state);
   const run::PhaseTimer timer(job, "equilibrium");
   if (law.start == Start::mode)
     start_in_mode(job, start, law);
@@ -234,6 +252,55 @@ void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState&
                     "{:.6g} rpm: its speed jumps",
                     d.name, to_rpm(wanted), start.state.t, job.model.shafts[d.at.shaft].name,
                     to_rpm(now)));
+  }
+}
+
+/// Where a prescribed angle or its rate jumps while a step runs.
+struct Jumps {
+  int count = 0;
+  double time = 0, speed = 0, angle = 0;  ///< the largest: s, rad/s, rad
+};
+Jumps jumps_of(const Law& angle, double from, double to) {
+  constexpr double seen = 1e-3;  // of the speed
+  Jumps out;
+  for (const double t : angle.breakpoints()) {
+    if (t <= from || t > to) continue;
+    const LawValue left = angle.at(std::nextafter(t, -infinity)), right = angle.at(t);
+    const double speed = right.df - left.df, turned = right.f - left.f;
+    const bool leaps = std::abs(turned) > 1e-9 * (1.0 + std::abs(right.f));
+    const bool jumps = std::abs(speed) > seen * std::max(std::abs(left.df), std::abs(right.df));
+    if (!leaps && !jumps) continue;
+    const bool larger = leaps ? std::abs(turned) > std::abs(out.angle)
+                              : out.angle == 0.0 && std::abs(speed) > std::abs(out.speed);
+    if (out.count++ == 0 || larger) {
+      out.time = t;
+      out.speed = speed;
+      out.angle = leaps ? turned : 0.0;
+    }
+  }
+  return out;
+}
+
+/// Laws that take no time to change the speed: what does that is in none of the results.
+void warn_of_jumping_laws(run::Job& job, const model::Step& step, const model::TransientStep& law,
+                          const run::StepState& start) {
+  const double from = start.state.t, to = from + law.duration;
+  for (const model::Drive& d : job.model.drives) {
+    const auto* spin = std::get_if<model::PrescribedSpin>(&d.law);
+    if (!spin || !spin->angle || (!d.step.empty() && d.step != step.name)) continue;
+    const Jumps jumps = jumps_of(*spin->angle, from, to);
+    if (jumps.count == 0) continue;
+    const std::string what =
+        jumps.angle != 0.0
+            ? fmt::format("angle of drive '{}' jumps by {:.4g} rad", d.name, jumps.angle)
+            : fmt::format("speed of drive '{}' jumps by {:.4g} rpm", d.name, to_rpm(jumps.speed));
+    results::warn_of_step(
+        job, step,
+        fmt::format("the {} at t = {:.6g} s{}: a torque without bound for an instant, in no column "
+                    "of torque "
+                    "or work; a ramp, smooth or monotone_cubic law takes time for it",
+                    what, jumps.time,
+                    jumps.count > 1 ? fmt::format(", the largest of {} jumps", jumps.count) : ""));
   }
 }
 
@@ -367,6 +434,8 @@ void TransientRun::warn_of_start() const {
   const bool given = law_.start == Start::rest || law_.start == Start::static_equilibrium;
   if (given && beginning_of(job_, step_, law_) == Beginning::settled)
     warn_of_pairs(job_, step_, start_);
+  warn_of_jumping_laws(job_, step_, law_, start_);
+  results::warn_of_changing_loads(job_, step_, law_, start_);
   if (law_.own_speed() && (job_.goes_on_in_motion(step_) || other_run))
     results::warn_of_step(
         job_, step_,
