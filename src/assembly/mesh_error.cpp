@@ -1,5 +1,6 @@
 #include <assembly/mesh_error.hpp>
 #include <assembly/element_section.hpp>
+#include <elements/shaft/general_beam.hpp>
 #include <elements/shaft/shaft_beam.hpp>
 
 #include <Eigen/LU>
@@ -176,12 +177,36 @@ void collect(const system::System& s,
     out[batch->nodes()[k]] = &batch->elements()[k].c;
 }
 
+/// Elements of a bowed shaft with the mass that is assembled: against their length, which counts, straight.
+std::map<std::array<Index, 2>, ShaftElementConstants> bowed_elements(const model::Model& m,
+                                                                     const meshes::Mesh& mesh,
+                                                                     const system::System& s) {
+  std::map<std::array<Index, 2>, ShaftElementConstants> out;
+  const auto* batch = s.batch<elements::GeneralBeam>();
+  if (!batch) return out;
+  std::map<std::array<Index, 2>, const elements::GeneralBeamConstants*> assembled;
+  for (std::size_t k = 0; k < batch->count(); ++k)
+    assembled[batch->nodes()[k]] = &batch->elements()[k].c;
+  for (const meshes::Element& e : mesh.elements) {
+    const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
+    const auto found = assembled.find({e.left.node, e.right.node});
+    if (found == assembled.end() || !shaft.bow.any() || shaft.sections[e.section].general) continue;
+    ShaftElementConstants c = element_constants(m, e);
+    if (c.o1 == 0.0 && c.o2 == 0.0) c.M4 = found->second->M4;
+    out[found->first] = c;
+  }
+  return out;
+}
+
 }  // namespace
 
 MeshError::MeshError(const model::Model& m, const meshes::Mesh& mesh, const Built& built) {
   std::map<std::array<Index, 2>, const ShaftElementConstants*> assembled;
   collect<false>(built.system, assembled);
   collect<true>(built.system, assembled);
+  const auto bowed = bowed_elements(m, mesh, built.system);
+  for (const auto& [nodes, constants] : bowed)
+    assembled[nodes] = &constants;
   Pieces pieces;
   for (const meshes::Element& e : mesh.elements) {
     const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];

@@ -586,8 +586,8 @@ const std::vector<CodeInfo>& error_catalogue() {
        "stability step are computed in axes that turn with the shaft and show both. Gears whose "
        "stiffness changes with their teeth, and rolling bearings, enter with their mean: where the "
        "frequency at which teeth or rolling elements pass, or a multiple of it, is the sum of two "
-       "natural frequencies, motion may grow that linear analyses do not see, and a transient "
-       "does.",
+       "natural frequencies, motion may grow that linear analyses do not see. A stability step "
+       "looks for that, to first order in the change of stiffness; a transient shows it.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W15", "a response that is not refined",
        "The points of a response over a range are made finer about natural frequencies or critical "
@@ -617,6 +617,13 @@ const std::vector<CodeInfo>& error_catalogue() {
        "rpm\"]\nspeed = { start = \"500 "
        "rpm\", stop = \"13000 rpm\", points = 100 }   # to 1.27 times the operating speed at "
        "least"},
+      {"W18", "masses that the base does not shake",
+       "The deck shakes its base, and has a foundation with internal coordinates that carry mass. "
+       "Its matrices do not say which way an internal coordinate moves (a modal coordinate moves "
+       "no one way), so the acceleration of the base has no force on it: the motion of the "
+       "foundation, and with it of the rotor, is smaller than it would be. The masses at the "
+       "support points are shaken.",
+       ""},
       {"W20", "left out or assumed in a conversion",
        "What another program's file says and a deck has no word for, or what a deck needs and the "
        "file does not say. The same list stands at the head of the deck.",

@@ -438,8 +438,11 @@ Problem mismatch(std::string_view text, const Quantity& q, const Dimension& want
   p.code = "E08";
   p.message =
       fmt::format("\"{}\" is {} where {} is needed", text, name_of(q.dimension), name_of(want));
+  const bool in_g = wanted == "m/s^2" && !text.empty() && text.back() == 'g';
   if (want.dimensionless())
     p.hint = "this value has no unit: write a plain number";
+  else if (in_g)
+    p.hint = "g is a gram; gn is the acceleration of gravity, 9.80665 m/s^2";
   else if (near(want.exponent[2], q.dimension.exponent[2]) &&
            want.exponent[Dimension::angle] != 0 && near(q.dimension.exponent[0], 0) &&
            near(q.dimension.exponent[1], 0))

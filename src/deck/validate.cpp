@@ -84,7 +84,32 @@ void check_places(const model::Model& m, Problems& out) {
   }
 }
 
+/// Masses of a foundation that are in its matrices alone: nobody knows which way they would be shaken.
+void check_shaken_foundations(const model::Model& m, Problems& out) {
+  const auto& shaken = m.base.acceleration;
+  if (std::none_of(shaken.begin(), shaken.end(), [](const LawPtr& law) { return law != nullptr; }))
+    return;
+  for (const model::Foundation& f : m.foundations) {
+    std::string names;
+    for (std::size_t k = 0; k < f.coordinates.size(); ++k) {
+      const auto i = static_cast<Index>(k);
+      if (f.coordinates[k].bearing >= 0 || f.M.size() == 0 || f.M.row(i).isZero(0.0)) continue;
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", f.coordinates[k].name);
+    }
+    if (names.empty()) continue;
+    report(out, "W18",
+           fmt::format("the acceleration of the base acts on the support points of foundation "
+                       "'{}', not on its "
+                       "internal coordinates {}: which way they move is not known",
+                       f.name, names),
+           "a lumped mass of its own as a pedestal, or as a shaft that does not turn, is shaken "
+           "with the rest",
+           f.where, Diagnostic::Severity::warning);
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
+  check_shaken_foundations(m, out);
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
     return std::holds_alternative<model::TransientStep>(s.law);
   });

@@ -58,8 +58,16 @@ bool is_constant(const Law& law, const Span& span) {
   });
 }
 
-bool varies(const std::vector<double>& harmonics) {
-  return std::any_of(harmonics.begin(), harmonics.end(), [](double x) { return x != 0.0; });
+/// Of the temperatures of a film, s; null: it has none.
+const double* time_constant_of(const model::BearingLaw& law) {
+  return std::visit(
+      [](const auto& x) -> const double* {
+        if constexpr (requires { x.flow.heat->time_constant; })
+          return x.flow.heat ? &x.flow.heat->time_constant : nullptr;
+        else
+          return nullptr;
+      },
+      law);
 }
 
 /// Torsion takes part in a step of small motions.
@@ -102,14 +110,21 @@ void check_linear(const model::Model& m, Problems& out) {
       const auto range = speeds_of(m, s, b.at.shaft);
       const bool stands = range && range->first == 0 && range->second == 0;
       const bool passes = m.shafts[b.at.shaft].rotating && !stands;
-      const auto* gears = std::get_if<model::GearPair>(&b.law);
-      if (gears && varies(gears->stiffness_harmonics) && passes)
-        say(fmt::format("the stiffness of gears '{}' changes with their teeth", b.name),
-            "leave linear out of the step, or stiffness_harmonics out of the gears");
-      if (*model::traits_of(b.law).rolling && passes)
-        say(fmt::format("the stiffness of bearing '{}' changes as its rolling elements pass",
-                        b.name),
-            "leave linear out of the step, or give the bearing coefficients (type = \"linear\")");
+      const model::SupportTraits law = model::traits_of(b.law);
+      if (law.passing->has_value() && passes)
+        say(fmt::format("the stiffness of {} '{}' changes as its {} pass",
+                        law.pair->has_value() ? (**law.pair).noun : "bearing", b.name,
+                        law.pair->has_value() ? "teeth" : "rolling elements"),
+            "leave linear out of the step, or give a constant stiffness (of gears no "
+            "stiffness_harmonics; "
+            "bearings of type = \"linear\")");
+      if (const double* follows = time_constant_of(b.law); follows && std::isfinite(*follows))
+        report(out, "W02",
+               fmt::format("time_constant of the heat of bearing '{}' has no effect on step '{}': "
+                           "small motions "
+                           "keep the temperatures of their equilibrium",
+                           b.name, s.name),
+               "leave linear out of the step", b.where, Diagnostic::Severity::warning);
       const auto* magnets = std::get_if<model::MagneticBearing>(&b.law);
       if (magnets && magnets->power && !is_constant(*magnets->power, span_of(m, s)))
         say(fmt::format("the power of magnetic bearing '{}' changes, and the matrices with it",

@@ -35,6 +35,7 @@ SupportTraits traits_of_journal() {
           .film = true,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = true,
           .nonlinear = true,
           .needs_load = true,
@@ -58,6 +59,7 @@ SupportTraits traits(const LinearBearing& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = false,
           .needs_load = false,
@@ -83,6 +85,7 @@ SupportTraits traits(const SpringBlock& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = false,
           .needs_load = false,
@@ -140,6 +143,7 @@ SupportTraits traits(const TableBearing& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = true,
           .nonlinear = false,
           .needs_load = false,
@@ -159,6 +163,7 @@ SupportTraits traits(const RigidSupport& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = false,
           .needs_load = false,
@@ -186,6 +191,7 @@ SupportTraits traits(const NonlinearSpring& b) {
           .film = false,
           .gap = gap,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = lateral,
           .needs_load = false,
@@ -252,6 +258,7 @@ SupportTraits traits(const SqueezeFilm& b) {
           .film = true,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = true,
           .needs_load = false,
@@ -259,6 +266,12 @@ SupportTraits traits(const SqueezeFilm& b) {
           .pair = none,
           .sensor = nullptr,
           .picture = Picture::bearing};
+}
+
+/// The cage turns by (1 -+ lambda)/2 of what the rings do; lambda: diameter of an element, seen along the
+/// axis, over that of the pitch circle.
+static Passing elements_of(int count, double lambda) {
+  return {0.5 * count * (1.0 - lambda), 0.5 * count * (1.0 + lambda)};
 }
 
 SupportTraits traits(const BallBearing& b) {
@@ -271,6 +284,8 @@ SupportTraits traits(const BallBearing& b) {
           .film = false,
           .gap = b.clearance > 0,
           .rolling = true,
+          .passing =
+              elements_of(b.balls, b.ball_diameter * std::cos(b.contact_angle) / b.pitch_diameter),
           .follows_spin = false,
           .nonlinear = true,
           .needs_load = b.preload == 0 && b.clearance >= 0,
@@ -290,6 +305,7 @@ SupportTraits traits(const RollerBearing& b) {
           .film = false,
           .gap = b.clearance > 0,
           .rolling = true,
+          .passing = elements_of(b.rollers, b.roller_diameter / b.pitch_diameter),
           .follows_spin = false,
           .nonlinear = true,
           .needs_load = b.clearance >= 0,
@@ -310,6 +326,7 @@ SupportTraits traits(const RollingEstimate& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = false,
           .needs_load = false,
@@ -365,6 +382,7 @@ SupportTraits traits(const MagneticBearing& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = true,  // with its control
           .needs_load = false,
@@ -384,6 +402,7 @@ SupportTraits traits(const Rub& b) {
           .film = false,
           .gap = true,
           .rolling = false,
+          .passing = none,
           .follows_spin = b.friction > 0,
           .nonlinear = true,
           .needs_load = false,
@@ -403,6 +422,7 @@ SupportTraits traits(const AnnularSeal&) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = true,
           .nonlinear = false,
           .needs_load = false,
@@ -423,6 +443,7 @@ SupportTraits traits(const CrossCoupling&) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = false,
           .nonlinear = false,
           .needs_load = false,
@@ -455,6 +476,7 @@ SupportTraits traits(const Coupling& b) {
           .film = false,
           .gap = false,
           .rolling = false,
+          .passing = none,
           .follows_spin = !b.C.isZero(0.0),
           .nonlinear = false,
           .needs_load = false,
@@ -469,6 +491,9 @@ SupportTraits traits(const GearPair& b) {
                  .details = fmt::format("({} and {} teeth)", b.teeth, b.other_teeth),
                  .mesh = true};
   pair.speed_ratio = -static_cast<double>(b.teeth) / b.other_teeth;
+  const std::vector<double>& varying = b.stiffness_harmonics;
+  const bool passes =
+      std::any_of(varying.begin(), varying.end(), [](double x) { return x != 0.0; });
   // one direction in space: not counted as holding y and z
   return {.held = Directions{b.helix != 0, false, false, false, false, false},
           .loads = NodeLoads{.lateral = true, .tilting = b.helix != 0, .torque = true},
@@ -479,6 +504,7 @@ SupportTraits traits(const GearPair& b) {
           .film = false,
           .gap = b.backlash >= 0,
           .rolling = false,
+          .passing = passes ? std::optional(Passing{.own = static_cast<double>(b.teeth)}) : none,
           .follows_spin = false,
           .nonlinear = b.backlash >= 0,
           .needs_load = false,

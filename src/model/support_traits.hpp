@@ -69,6 +69,13 @@ struct ShaftPair {
   bool mesh = false;       ///< through teeth: the axes of the shafts lie apart
 };
 
+/// Parts that pass under the load as the shafts turn, and change the stiffness as they do: teeth, rolling
+/// elements.
+struct Passing {
+  double own = 0,
+         other = 0;  ///< passes for each turn of the shaft, and of the other or the housing
+};
+
 struct SupportTraits {
   /// Directions in which a displacement meets a force or moment of its own direction, K(c, c) != 0:
   /// at once, or (films, seals, contacts) as soon as the shaft is displaced or turns.
@@ -81,9 +88,10 @@ struct SupportTraits {
   Given<Bias> bias;
   Given<std::vector<StiffnessCurve>> curves;
   Given<Acts> acts;
-  Given<bool> film;          ///< oil film: it fills a clearance and is not believed near its end
-  Given<bool> gap;           ///< over a part of its range it carries nothing
-  Given<bool> rolling;       ///< carries by rolling elements, which come and go under the load
+  Given<bool> film;     ///< oil film: it fills a clearance and is not believed near its end
+  Given<bool> gap;      ///< over a part of its range it carries nothing
+  Given<bool> rolling;  ///< carries by rolling elements, which come and go under the load
+  Given<std::optional<Passing>> passing;
   Given<bool> follows_spin;  ///< force or coefficients depend on the spin of the shaft
   Given<bool> nonlinear;     ///< lateral stiffness depends on the displacement
   Given<bool> needs_load;    ///< it has no stiffness where it carries no load

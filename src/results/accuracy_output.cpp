@@ -179,8 +179,12 @@ std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double
 /// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
 /// lowest in any case, and what grows. near: the equilibrium is sought from there; null: from the
 /// reference configuration.
-std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed, double largest_spin,
-                                         const system::State* near) {
+struct ContainedModes {
+  std::vector<Contained> modes;
+  std::vector<std::string> left_out;  ///< shafts whose elements are not judged
+};
+ContainedModes modes_that_matter(const TransientEnd& end, double speed, double largest_spin,
+                                 const system::State* near) {
   const run::Job& job = end.job;
   analysis::SteadyRotation running = rotation_at(end, speed);
   std::vector<double> spin;
@@ -195,16 +199,18 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed, 
   if (near) linear.start_from(*near);
   std::vector<analysis::WhirlMode> modes = slow_modes(linear, speed, beside_the_spin * fastest);
   const assembly::MeshError mesh(job.model, job.mesh, job.built);
-  std::vector<Contained> out;
+  ContainedModes contained{{}, mesh.left_out()};
+  std::vector<Contained>& out = contained.modes;
   for (analysis::WhirlMode& m : modes) {
     const bool beyond = static_cast<Index>(out.size()) >= lowest_modes &&
                         m.frequency > beside_the_spin * largest_spin;
     if (!(m.frequency > 0.0) || (beyond && m.growth() <= 0)) continue;
     const bool looked_at = out.empty() || m.frequency <= judged_mesh * largest_spin;
-    const double error = looked_at ? relative_mesh_error(mesh, linear.at(speed), m, spin) : nan;
+    const bool judged = looked_at && (!mesh.empty() || mesh.left_out().empty());
+    const double error = judged ? relative_mesh_error(mesh, linear.at(speed), m, spin) : nan;
     out.push_back({std::move(m), error});
   }
-  return out;
+  return contained;
 }
 
 class AccuracyOutput final : public TransientOutput {
@@ -240,7 +246,7 @@ class AccuracyOutput final : public TransientOutput {
   void judge_steps(const TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_twist(TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_modes(TransientEnd& end, std::vector<std::string>& warnings) const;
-  void judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const;
+  void judge_mesh(TransientEnd& end, const ContainedModes& contained) const;
   void judge_damping(TransientEnd& end, const std::vector<Contained>& modes, double speed,
                      std::vector<std::string>& warnings) const;
   void add_damping_row(TransientEnd& end, const analysis::WhirlMode& m, io::Table& t,
@@ -342,19 +348,20 @@ void AccuracyOutput::judge_twist(TransientEnd& end, std::vector<std::string>& wa
 void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& warnings) const {
   if (end.result.reason == analysis::StopReason::failed) return;
   const double speed = end.result.end.v[6 * end.job.reference() + system::spin_phi];
-  std::vector<Contained> modes;
+  ContainedModes contained;
   try {
-    modes = modes_that_matter(end, speed, steps_.largest_spin(), begun_);
+    contained = modes_that_matter(end, speed, steps_.largest_spin(), begun_);
   } catch (const Error& e) {
     end.summary["accuracy"]["modes"] = std::string("not found at the end of the run: ") + e.what();
     return;
   }
-  judge_mesh(end, modes);
-  judge_damping(end, modes, speed, warnings);
+  judge_mesh(end, contained);
+  judge_damping(end, contained.modes, speed, warnings);
 }
 
 /// Of the modes whose mesh is looked at: the lowest one in any case.
-void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const {
+void AccuracyOutput::judge_mesh(TransientEnd& end, const ContainedModes& contained) const {
+  const std::vector<Contained>& modes = contained.modes;
   std::vector<analysis::WhirlMode> listed;
   listed.reserve(modes.size());
   for (const Contained& c : modes)
@@ -367,6 +374,8 @@ void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>&
     largest = modes[k].mesh_error;
     worst = labels[k];
   }
+  for (const std::string& shaft : contained.left_out)
+    end.summary["mesh"]["not judged"].push("shaft '" + shaft + "'");
   if (worst.empty()) return;
   io::Value& v = end.summary["mesh"];
   v["elements"] = end.job.mesh.elements.size();

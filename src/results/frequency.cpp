@@ -411,29 +411,28 @@ void FrequencyStep::finish(const std::string& line) {
   section.text += fmt::format(" Linearised {}.", about_);
   if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
   warn_of_mean_stiffness();
-  warn_of_passing_parts();
+  warn_of_passing_teeth();
   run::ProgressLine(step.name, job.options.quiet)
       .done(fmt::format("{}{}, {}, {}", line, also_, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
 }
 
-void FrequencyStep::warn_of_passing_parts() {
-  PassingParts parts = passing_parts(job.model);
-  if (type_ != "stability") parts.rolling.clear();
-  if (parts.empty() || stands(step.law)) return;
+void FrequencyStep::warn_of_passing_teeth() {
+  if (type_ == "stability" || stands(step.law)) return;  // which looks at what they do
+  std::vector<analysis::PassingParts> parts = passing_parts(job);
+  std::erase_if(parts, [](const analysis::PassingParts& p) { return !p.meshes; });
+  if (parts.empty()) return;
   const std::string what = fmt::format(
-      "the stiffness of {} enters as its mean over the teeth or rolling elements that pass; where "
-      "the "
-      "frequency at which they pass, or a multiple of it, is the sum of two natural frequencies, "
-      "motion may "
-      "grow that is not seen here",
-      parts.text());
+      "the stiffness of {} enters as its mean over a tooth; where the frequency of the teeth, or a "
+      "multiple, "
+      "is the sum of two natural frequencies, motion may grow that is not seen here",
+      names_of(parts));
   section.text += " " + capital(what) + ".";
   Diagnostic d;
   d.code = "W14";
   d.message = fmt::format("step '{}': {}", step.name, what);
-  d.hint = "a transient follows them";
+  d.hint = "a stability step looks for such growth, a transient follows the teeth";
   warn(job, std::move(d));
 }
 
@@ -532,27 +531,44 @@ bool is_judged_in_turning_axes(const model::Model& m) {
   return true;
 }
 
-std::string PassingParts::text() const {
-  const char* between = gears.empty() || rolling.empty() ? "" : ", ";
-  return rolling + between + gears;
+std::vector<analysis::PassingParts> passing_parts(const run::Job& job) {
+  const model::Model& m = job.model;
+  const auto speed = [&](const model::Location& at) {
+    const model::Shaft& shaft = m.shafts[at.shaft];
+    return shaft.rotating ? shaft.speed_ratio : 0.0;
+  };
+  std::vector<analysis::PassingParts> out;
+  for (std::size_t i = 0; i < m.bearings.size(); ++i) {
+    const model::Bearing& b = m.bearings[i];
+    const model::SupportTraits law = model::traits_of(b.law);
+    if (!law.passing->has_value()) continue;
+    const model::Passing passing = **law.passing;
+    const double rate =
+        std::abs(passing.own * speed(b.at) + (b.to ? passing.other * speed(*b.to) : 0.0));
+    if (rate == 0.0) continue;
+    auto it = std::find_if(out.begin(), out.end(), [&](const analysis::PassingParts& p) {
+      return std::abs(p.rate - rate) < 1e-9 * rate;
+    });
+    if (it == out.end()) it = out.insert(out.end(), {.rate = rate});
+    it->meshes = it->meshes || law.pair->has_value();
+    it->names.push_back(
+        fmt::format("{} '{}'", law.pair->has_value() ? (**law.pair).noun : "bearing", b.name));
+    const std::vector<std::size_t>& terms = job.built.support_terms[i];
+    it->terms.insert(it->terms.end(), terms.begin(), terms.end());
+    it->nodes.push_back({job.mesh.bearings[i].shaft.node, job.mesh.bearings[i].other.node});
+  }
+  for (analysis::PassingParts& p : out) {
+    std::sort(p.terms.begin(), p.terms.end());
+    p.terms.erase(std::unique(p.terms.begin(), p.terms.end()), p.terms.end());
+  }
+  return out;
 }
 
-PassingParts passing_parts(const model::Model& m) {
-  PassingParts out;
-  for (const model::Bearing& b : m.bearings) {
-    const model::Shaft& shaft = m.shafts[b.at.shaft];
-    const bool other_turns =
-        b.to && m.shafts[b.to->shaft].rotating && m.shafts[b.to->shaft].speed_ratio != 0;
-    if (!(shaft.rotating && shaft.speed_ratio != 0) && !other_turns) continue;
-    const auto add = [&](std::string& list, const char* noun) {
-      list += fmt::format("{}{} '{}'", list.empty() ? "" : ", ", noun, b.name);
-    };
-    if (*model::traits_of(b.law).rolling) add(out.rolling, "bearing");
-    const auto* gears = std::get_if<model::GearPair>(&b.law);
-    if (!gears) continue;
-    const std::vector<double>& h = gears->stiffness_harmonics;
-    if (std::any_of(h.begin(), h.end(), [](double x) { return x != 0.0; })) add(out.gears, "gears");
-  }
+std::string names_of(const std::vector<analysis::PassingParts>& parts) {
+  std::string out;
+  for (const analysis::PassingParts& p : parts)
+    for (const std::string& name : p.names)
+      out += (out.empty() ? "" : ", ") + name;
   return out;
 }
 

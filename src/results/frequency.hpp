@@ -1,6 +1,7 @@
 // What the steps in the frequency domain share: the linearisation a step works on, its tables,
 // figures and pictures.
 #pragma once
+#include <analysis/spectra/passing_growth.hpp>
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/stability.hpp>
@@ -89,8 +90,8 @@ class FrequencyStep {
   void say_open_gears();
   /// W14, where the step takes the mean of a stiffness that turns.
   void warn_of_mean_stiffness();
-  /// W14, where gears, and rolling bearings where stability is judged, enter with their mean stiffness.
-  void warn_of_passing_parts();
+  /// W14, where gears enter with their mean stiffness and nothing looks at what the change does.
+  void warn_of_passing_teeth();
   std::string type_, about_, claim_, also_;
   double top_speed_;
   int load_steps_;
@@ -123,14 +124,11 @@ bool turns_with_inertia(const model::Model& m);
 /// Stability of such a rotor is judged in axes that turn with it: always where its stiffness is
 /// unequal, and where its inertia is and all shafts turn at one speed.
 bool is_judged_in_turning_axes(const model::Model& m);
-/// Bearings whose stiffness changes as their parts pass, which linear analyses take the mean of: gears with
-/// stiffness_harmonics, rolling bearings. "gears 'mesh'", "bearing 'DE', gears 'mesh'"; empty: none.
-struct PassingParts {
-  std::string gears, rolling;
-  bool empty() const { return gears.empty() && rolling.empty(); }
-  std::string text() const;
-};
-PassingParts passing_parts(const model::Model& m);
+/// Bearings whose stiffness changes as their parts pass, of which linear analyses take the mean; those that
+/// pass at one rate together.
+std::vector<analysis::PassingParts> passing_parts(const run::Job& job);
+/// "bearing 'DE', gear pair 'mesh'"
+std::string names_of(const std::vector<analysis::PassingParts>& parts);
 /// "stiffness" or "inertia".
 const char* what_turns(const model::Model& m);
 

@@ -153,6 +153,7 @@ void LimitWatch::restore(InArchive& in) {
 class LimitsOutput final : public TransientOutput {
  public:
   explicit LimitsOutput(const TransientSetup& s) : watch_(s.job, s.law.linear) {
+    if (s.motion) find_rest(s);
     if (s.job.model.output.report && !watch_.gaps().empty()) watch_stations(s.job);
     for (const WatchedTable& x : watch_.tables())
       content_ += fmt::format(" {} {} {}", x.bearing, x.low, x.high);
@@ -187,7 +188,9 @@ class LimitsOutput final : public TransientOutput {
   void summarize(TransientEnd& end) override {
     judge_tables(end);
     std::vector<ShortFilm> films;
-    for (const Gap& x : watch_.gaps()) {
+    for (std::size_t k = 0; k < watch_.gaps().size(); ++k) {
+      const Gap& x = watch_.gaps()[k];
+      if (k < at_rest_.size()) judge_share(end, x, at_rest_[k]);
       judge_gap(end, x);
       if (x.film) films.push_back({x.bearing, x.largest.value / x.size});
     }
@@ -201,13 +204,48 @@ class LimitsOutput final : public TransientOutput {
       points.emplace_back("", p);
     stations_.emplace(std::move(points), job.reference());
   }
+  /// Displacements of the motion that small ones are about.
+  void find_rest(const TransientSetup& s);
   void judge_tables(TransientEnd& end) const;
+  static void judge_share(TransientEnd& end, const Gap& x, double at_rest);
   static void judge_gap(TransientEnd& end, const Gap& x);
 
   std::string content_;
   LimitWatch watch_;
+  std::vector<double> at_rest_;                    ///< of the gaps, m; of a linear step alone
   std::optional<analysis::PeakTracker> stations_;  ///< for the clearance diagram
 };
+
+void LimitsOutput::find_rest(const TransientSetup& s) {
+  const system::State& start = s.start.state;
+  system::Workspace w = s.job.system().make_workspace();
+  VecX q(start.q.size());
+  s.motion->steady(start.t, q);
+  if (!s.job.system().evaluate_nodes(w, start.frames, start.t, q, s.motion->steady_rates(),
+                                     VecX::Zero(q.size())))
+    return;
+  const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
+  for (const Gap& x : watch_.gaps())
+    at_rest_.push_back(x.reach(node));
+}
+
+/// Coefficients of small motions, and a motion that is not small against the film.
+void LimitsOutput::judge_share(TransientEnd& end, const Gap& x, double at_rest) {
+  if (!x.film || !(x.size > at_rest)) return;
+  const double share = (x.largest.value - at_rest) / (x.size - at_rest);
+  end.summary["gaps"][x.name]["share of the film that the motion takes"] = share;
+  if (share <= small_in_film || !std::isnan(x.begin)) return;  // beyond: judge_gap
+  Diagnostic d;
+  d.code = "W11";
+  d.message = fmt::format(
+      "step '{}': at t = {:.6g} s the motion takes {:.2g} of the film that the equilibrium leaves "
+      "in '{}' "
+      "({:.4g} of {:.4g} mm from its middle): its coefficients are those of small motions",
+      end.step.name, x.largest.time, share, x.name, 1e3 * x.largest.value, 1e3 * x.size);
+  d.hint = "without linear = true the step meets the film as it is";
+  d.where = x.where;
+  warn(end.job, std::move(d));
+}
 
 void LimitsOutput::judge_tables(TransientEnd& end) const {
   const WatchedTable* worst = nullptr;

@@ -3,7 +3,7 @@
 #include <results/clearances.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/refined_response.hpp>
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/instability_bands.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/table_spacing.hpp>
 #include <run/diagnose.hpp>
@@ -269,10 +269,6 @@ bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
   return false;
 }
 
-/// Share of the film left by the equilibrium up to which coefficients of small motions are believed.
-/// A circle of 0.3 in the middle of a short film meets 1.15 times the damping of a small one, of 0.5
-/// 1.5 times, (1 - e^2)^-1.5.
-constexpr double small_in_film = 0.3;
 /// rad: what is left out goes with the square of the tilt, 1 %.
 constexpr double small_tilt = 0.1;
 

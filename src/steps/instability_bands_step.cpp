@@ -1,6 +1,6 @@
 // A stability step of a rotor whose shaft has unequal principal stiffnesses: bands of parametric
 // instability.
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/instability_bands.hpp>
 #include <results/frequency.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
@@ -283,10 +283,10 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                                 : "Neither the rotor nor its supports are isotropic",
                         axes.harmonics());
   std::string known = counts_of(r);
-  if (const results::PassingParts passing = results::passing_parts(job.model); !passing.empty())
+  if (const auto passing = results::passing_parts(job); !passing.empty())
     known +=
         fmt::format("; of the mean stiffness of {}: growth by what passes in them is not excluded",
-                    passing.text());
+                    results::names_of(passing));
   std::string in_short = known;
   known += fmt::format(
       "; bands narrower than the distance of the speeds are found at critical speeds and halfway "

@@ -1,5 +1,5 @@
 #include <analysis/transient/momentum_route.hpp>
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/rotating_axes.hpp>
 #include <analysis/statics/buckling.hpp>
 #include <analysis/steady_rotation.hpp>
 #include <core/plugin.hpp>

@@ -258,6 +258,63 @@ void add_figures(results::FrequencyStep& s, const analysis::StabilityResult& r,
   }
 }
 
+/// "motions at 906.5 and 906.5 Hz grow by about 383 1/s at 2719.6 rpm, where teeth of gear pair 'mesh' pass at
+/// their sum, 1813 Hz"
+std::string text_of(const analysis::PassingGrowth& g, const analysis::PassingParts& cause) {
+  const std::string sum = g.multiple == 1
+                              ? fmt::format("their sum, {:.4g} Hz", to_hz(g.first + g.second))
+                              : fmt::format("{:.4g} Hz, of which their sum is {} times",
+                                            to_hz(g.first + g.second) / g.multiple, g.multiple);
+  return fmt::format(
+      "motions at {:.4g} and {:.4g} Hz grow by about {:.3g} 1/s at {:.6g} rpm, where {} of {} pass "
+      "at {}",
+      to_hz(g.first), to_hz(g.second), g.growth, to_rpm(g.speed),
+      cause.meshes ? "teeth" : "rolling elements", results::names_of({cause}), sum);
+}
+
+/// The verdict on a machine whose mean stiffness has the verdict `line`, with what parts of varying stiffness
+/// make grow as they pass, to first order; W14 where something does.
+std::string with_passing_parts(results::FrequencyStep& s, const std::string& line,
+                               const std::vector<analysis::PassingParts>& parts,
+                               const std::vector<double>& speeds) {
+  const std::string of_the_mean =
+      fmt::format("{}, of the mean stiffness of {}", line, results::names_of(parts));
+  const analysis::PassingOptions options;
+  std::vector<analysis::PassingGrowth> found;
+  io::Value& v = s.summary()["growth by what passes"];
+  try {
+    found = analysis::find_passing_growth(s.linear, parts, speeds, options);
+  } catch (const Error& e) {
+    v = "not known: " + e.diagnostics().front().message;
+    return of_the_mean + "; growth by what passes in them is not excluded";
+  }
+  v = io::Value::array();
+  for (const analysis::PassingGrowth& g : found) {
+    io::Value row;
+    row["of"] = results::names_of({parts[g.parts]});
+    row["speed [rpm]"] = to_rpm(g.speed);
+    row["growth [1/s]"] = g.growth;
+    row["first frequency [Hz]"] = to_hz(g.first);
+    row["second frequency [Hz]"] = to_hz(g.second);
+    row["multiple"] = g.multiple;
+    v.push(std::move(row));
+  }
+  if (found.empty())
+    return fmt::format(
+        "{}; to first order nothing grows by what passes in them ({} slowest motions, {} "
+        "multiples)",
+        of_the_mean, options.modes, options.multiples);
+  const std::string grows = text_of(found.front(), parts[found.front().parts]);
+  Diagnostic d;
+  d.code = "W14";
+  d.message = fmt::format(
+      "step '{}': {} (to first order in the change of stiffness){}", s.step.name, grows,
+      found.size() > 1 ? fmt::format(", and {} more such pairs", found.size() - 1) : "");
+  d.hint = "a transient shows what becomes of it";
+  results::warn(s.job, std::move(d));
+  return grows + "; " + of_the_mean;
+}
+
 }  // namespace
 
 void run_stability_step(run::Job& job, const model::Step& step, const model::StabilityStep& law) {
@@ -276,7 +333,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   io::Value& v = s.summary();
   const bool unknown = r.stable_at_start && !r.verdicts.front().certificate.stability_certain();
   v["stable at the first speed"] = unknown ? io::Value() : io::Value(r.stable_at_start);
-  const results::PassingParts passing = results::passing_parts(job.model);
+  const std::vector<analysis::PassingParts> passing = results::passing_parts(job);
   v["certified"] = r.certain() && !results::turns_with_inertia(job.model) && passing.empty();
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
@@ -291,10 +348,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   std::string line = verdict_line(r);
   if (results::turns_with_inertia(job.model))
     line += "; of the mean inertia over a revolution: growth in bands of speed is not excluded";
-  if (!passing.empty())
-    line +=
-        fmt::format("; of the mean stiffness of {}: growth by what passes in them is not excluded",
-                    passing.text());
+  if (!passing.empty()) line = with_passing_parts(s, line, passing, speeds);
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + "." + neutral_text(r);
   const std::string moments = results::moments_along_shafts(job.model);

@@ -213,3 +213,27 @@ TEST(BowedRotors, AtRestTheyStayAtTheirAngle) {
   ASSERT_EQ(series.exit, 0) << series.log;
   EXPECT_FALSE(series.says("W10")) << series.log;
 }
+
+// A bow of 50 um does not change what the length of the elements does to the frequencies.
+TEST(BowedRotors, MeshIsJudgedAsThatOfStraightOnes) {
+  const auto error_of = [](const char* bow, const char* step) {
+    const DeckRun r(fmt::format(
+        "format = 1\n[model.mesh]\nmin_elements_per_section = 1\n[[shaft]]\nname = \"r\"\nmaterial "
+        "= "
+        "\"steel\"\n{}columns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 700, 60], "
+        "[\"b\", 700, 60]]\n[[bearing]]\nat = \"a:start\"\ntype = \"linear\"\nkxx = \"1e8 "
+        "N/m\"\nkyy = \"5e7 N/m\"\nkzz = \"5e7 N/m\"\n[[bearing]]\nat = \"b:end\"\ntype = "
+        "\"linear\"\nkyy = \"5e7 N/m\"\nkzz = \"5e7 N/m\"\n[[step]]\nname = \"s\"\n{}",
+        bow, step));
+    EXPECT_EQ(r.exit, 0) << r.log;
+    return r.summary("s").at("mesh").at("relative error of frequencies").number();
+  };
+  const char* bow = "bow = { amount = \"50 um\" }\n";
+  for (const char* step : {"type = \"modal\"\nspeed = \"3000 rpm\"\nmodes = 4\n",
+                           "type = \"transient\"\nduration = \"10 ms\"\ninitial_speed = \"9000 "
+                           "rpm\"\nstart = \"static\"\n"}) {
+    const double straight = error_of("", step);
+    EXPECT_GT(straight, 1e-4) << step;
+    EXPECT_NEAR(error_of(bow, step), straight, 0.02 * straight) << step;
+  }
+}

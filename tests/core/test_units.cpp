@@ -234,6 +234,8 @@ TEST(Units, Problems) {
        "write it in mm or another unit of the same kind"},
       {"157 mm 5", "m", "E10", "\"157 mm 5\" cannot be read as a quantity: unexpected '5'",
        "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
+      {"3 g", "m/s^2", "E08", "\"3 g\" is a mass where an acceleration is needed",
+       "g is a gram; gn is the acceleration of gravity, 9.80665 m/s^2"},
       {"157 1/s", "rpm", "E08", "\"157 1/s\" is a rate (1/s) where an angular speed is needed",
        "say what turns: write it in rad/s, Hz or rpm"},
       {"157 /s", "rpm", "E08", "\"157 /s\" is a rate (1/s) where an angular speed is needed",

@@ -7,7 +7,7 @@
 #include "beam_line.hpp"
 #include "record.hpp"
 
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/instability_bands.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
 #include <meshes/mesh.hpp>

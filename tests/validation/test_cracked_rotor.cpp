@@ -2,7 +2,7 @@
 // (the two-degree-of-freedom rotor, by shooting to 1e-10), compliance in series,
 // laws that follow the bending, and the bow response of Nicholas, Gunter and Allaire.
 #include <analysis/response/unbalance.hpp>
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/instability_bands.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
 #include <elements/shaft/crack_compliance.hpp>
 #include <system/problem.hpp>

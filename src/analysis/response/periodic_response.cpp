@@ -1,5 +1,5 @@
 #include <analysis/response/periodic_response.hpp>
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/rotating_axes.hpp>
 #include <analysis/statics/definiteness.hpp>
 #include <core/contract.hpp>
 

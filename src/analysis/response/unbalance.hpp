@@ -4,7 +4,7 @@
 #pragma once
 #include <analysis/response/harmonic.hpp>
 #include <analysis/response/periodic_response.hpp>
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/rotating_axes.hpp>
 
 namespace whirl::analysis {
 

@@ -1,7 +1,7 @@
 // Where parametric and combination resonances lie: (w_i + w_j) = n Omega and |w_i - w_j| = n Omega, w in fixed
 // axes (V. V. Bolotin, The Dynamic Stability of Elastic Systems, 1964; V. A. Yakubovich and V. M. Starzhinskii,
 // Linear Differential Equations with Periodic Coefficients, 1975).
-#include <analysis/spectra/periodic.hpp>
+#include <analysis/spectra/rotating_axes.hpp>
 
 #include <analysis/spectra/whirl_modes.hpp>
 #include <core/error.hpp>

@@ -1,0 +1,243 @@
+#include <analysis/spectra/passing_growth.hpp>
+
+#include <analysis/spectra/whirl_modes.hpp>
+#include <core/contract.hpp>
+#include <core/error.hpp>
+#include <la/multiply.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+
+/// Samples of one pass: twice the multiples at least, and enough that none of them is taken for another.
+constexpr int samples_of_a_pass = 64;
+
+/// A motion and what its amplitude is divided by.
+struct Shape {
+  double frequency = 0, growth = 0;
+  VecXc x;
+  Complex slope;  ///< x^H (2 lambda M + C) x
+};
+
+/// What two motions have in common with one multiple of what passes.
+struct Pair {
+  std::size_t parts = 0;
+  int multiple = 1;
+  std::size_t i = 0, j = 0;  ///< in the order of their frequencies
+};
+
+class PassingSearch {
+ public:
+  PassingSearch(Linearizer& linear, const std::vector<PassingParts>& parts,
+                const PassingOptions& options)
+      : linear_(linear),
+        parts_(parts),
+        options_(options),
+        solver_(linear, modes_of(options)),
+        workspace_(linear.system().make_workspace()),
+        matrices_(linear.system().make_matrices()),
+        own_(matrices_.K) {}
+
+  const std::vector<Shape>& shapes_at(double Omega) {
+    if (!shapes_.empty() && speed_ == Omega) return shapes_;
+    speed_ = Omega;
+    shapes_.clear();
+    joined_.assign(parts_.size(), {});
+    const std::vector<WhirlMode> modes = solver_.solve(Omega);
+    const la::MCK& m = linear_.at(Omega);
+    VecXc y;
+    for (const WhirlMode& mode : modes) {
+      if (!mode.oscillates() || shapes_.size() == at(options_.modes)) continue;
+      Shape s{mode.frequency, mode.lambda.real(), mode.x, {}};
+      la::multiply(m.M, s.x, y);
+      s.slope = 2.0 * mode.lambda * s.x.dot(y);
+      la::multiply(m.C, s.x, y);
+      s.slope += s.x.dot(y);
+      shapes_.push_back(std::move(s));
+    }
+    return shapes_;
+  }
+
+  /// How far the multiple is from the sum of the frequencies, rad/s.
+  double detuning(double Omega, const Pair& p) {
+    const std::vector<Shape>& s = shapes_at(Omega);
+    return p.multiple * parts_[p.parts].rate * std::abs(Omega) - s[p.i].frequency -
+           s[p.j].frequency;
+  }
+
+  /// Growth of the two at a detuning, 1/s; below zero: nothing grows.
+  double growth(double Omega, const Pair& p, double detuned) {
+    const std::vector<Shape>& s = shapes_at(Omega);
+    const Complex forth = coupling(p, p.i, p.j), back = std::conj(coupling(p, p.j, p.i));
+    const Complex own = s[p.i].growth, other = Complex(s[p.j].growth, detuned);
+    const Complex half = 0.5 * (own - other), root = std::sqrt(half * half + forth * back);
+    return 0.5 * (own + other).real() + std::abs(root.real());
+  }
+
+  bool has(double Omega, const Pair& p) { return shapes_at(Omega).size() > std::max(p.i, p.j); }
+
+ private:
+  static ModesOptions modes_of(const PassingOptions& options) {
+    ModesOptions o;
+    o.count = options.modes;
+    o.certify = false;
+    return o;
+  }
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  /// c_ij.
+  Complex coupling(const Pair& p, std::size_t i, std::size_t j) {
+    std::vector<MatXc>& all = joined_[p.parts];
+    if (all.empty()) join(p.parts, all);
+    const MatXc& joined = all[static_cast<std::size_t>(p.multiple - 1)];
+    return -0.5 * joined(static_cast<Index>(i), static_cast<Index>(j)) / shapes_[i].slope;
+  }
+
+  /// x_i^H conj(K_h) conj(x_j) of all motions, of each multiple, while parts pass about the equilibrium of
+  /// the mean.
+  void join(std::size_t k, std::vector<MatXc>& out) {
+    const auto n = static_cast<Index>(shapes_.size());
+    MatXc shapes(linear_.system().size(), n);
+    for (Index i = 0; i < n; ++i)
+      shapes.col(i) = shapes_[at(i)].x;
+    out.assign(static_cast<std::size_t>(options_.multiples), MatXc::Zero(n, n));
+    VecXc y;
+    for (int sample = 0; sample < samples_of_a_pass; ++sample) {
+      const double theta = two_pi * sample / samples_of_a_pass;
+      take_stiffness(k, (speed_ < 0 ? -theta : theta) / parts_[k].rate);
+      MatXc at_hand(n, n);
+      for (Index j = 0; j < n; ++j) {
+        const VecXc other = shapes.col(j).conjugate();
+        la::multiply(own_, other, y);
+        at_hand.col(j) = shapes.adjoint() * y;
+      }
+      for (int h = 1; h <= options_.multiples; ++h)
+        out[static_cast<std::size_t>(h - 1)] +=
+            2.0 / samples_of_a_pass * std::polar(1.0, -h * theta) * at_hand;
+    }
+  }
+
+  /// Of the parts with the reference turned by an angle, rad, into own_.
+  void take_stiffness(std::size_t k, double turned) {
+    const system::System& system = linear_.system();
+    const SteadySystem& running = linear_.running();
+    const system::State& e = linear_.equilibrium().state;
+    VecX q = e.q;
+    for (Index i = 0; i < system.nodes(); ++i)
+      if (running.spinning()[at(i)])
+        q[6 * i + system::spin_phi] += running.ratio(system.node(i).line) * turned;
+    workspace_.context.averaged = false;
+    if (!system.tangent(workspace_, e.frames, e.t, q, e.v, e.a, matrices_, &parts_[k].terms))
+      throw run_error("E76", "the equilibrium lies outside the range of what passes", "");
+    own_.set_zero();
+    for (const auto& between : parts_[k].nodes)
+      for (const Index i : between)
+        for (const Index j : between)
+          if (const Index slot = i < 0 || j < 0 ? -1 : own_.pattern().slot(i, j); slot >= 0)
+            own_.block(slot) = matrices_.K.block(slot);
+  }
+
+  Linearizer& linear_;
+  const std::vector<PassingParts>& parts_;
+  PassingOptions options_;
+  WhirlSolver solver_;
+  system::Workspace workspace_;
+  la::MCK matrices_;
+  la::BlockMatrix<6> own_;  ///< stiffness of the parts alone
+  double speed_ = nan;
+  std::vector<Shape> shapes_;
+  std::vector<std::vector<MatXc>> joined_;  ///< of the parts, the multiples
+};
+
+/// Where the multiple meets the sum of the frequencies, between two speeds at which it is on either side.
+double meeting(PassingSearch& search, const Pair& p, double low, double high) {
+  constexpr int rounds = 6;
+  double below = search.detuning(low, p), above = search.detuning(high, p);
+  const double close = 1e-6 * std::abs(above - below);
+  double speed = low;
+  for (int k = 0; k < rounds; ++k) {
+    speed = low - below * (high - low) / (above - below);
+    if (!search.has(speed, p)) break;
+    const double here = search.detuning(speed, p);
+    if (std::abs(here) < close) break;
+    const bool left = (here < 0) == (below < 0);
+    (left ? low : high) = speed;
+    (left ? below : above) = here;
+  }
+  return speed;
+}
+
+void keep(std::vector<PassingGrowth>& out, const PassingGrowth& x) {
+  const auto same = [&](const PassingGrowth& y) {
+    constexpr double apart = 1e-3;
+    return y.parts == x.parts && y.multiple == x.multiple &&
+           std::abs(y.first - x.first) < apart * x.first &&
+           std::abs(y.second - x.second) < apart * x.second;
+  };
+  const auto it = std::find_if(out.begin(), out.end(), same);
+  if (it == out.end())
+    out.push_back(x);
+  else if (x.growth > it->growth)
+    *it = x;
+}
+
+}  // namespace
+
+std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
+                                               const std::vector<PassingParts>& parts,
+                                               const std::vector<double>& speeds,
+                                               const PassingOptions& options) {
+  WHIRL_EXPECTS(!speeds.empty() && options.modes > 0 && options.multiples > 0);
+  std::vector<PassingGrowth> out;
+  PassingSearch search(linear, parts, options);
+  const auto look = [&](double Omega, const Pair& p) {
+    if (Omega == 0.0 || !search.has(Omega, p)) return;
+    const double growth = search.growth(Omega, p, search.detuning(Omega, p));
+    if (!(growth > 0.0)) return;
+    const std::vector<Shape>& s = search.shapes_at(Omega);
+    keep(out, {p.parts, Omega, growth, s[p.i].frequency, s[p.j].frequency, p.multiple});
+  };
+  const auto for_each_pair = [&](std::size_t motions, const auto& f) {
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      for (int h = 1; h <= options.multiples; ++h)
+        for (std::size_t i = 0; i < motions; ++i)
+          for (std::size_t j = i; j < motions; ++j)
+            f(Pair{k, h, i, j});
+  };
+  std::vector<std::vector<double>> known;  // frequencies at the speeds
+  for (const double Omega : speeds) {
+    known.emplace_back();
+    for (const Shape& s : search.shapes_at(Omega))
+      known.back().push_back(s.frequency);
+  }
+  const auto off = [&](std::size_t n, const Pair& p) {
+    return p.multiple * parts[p.parts].rate * std::abs(speeds[n]) - known[n][p.i] - known[n][p.j];
+  };
+  struct Between {
+    std::size_t n;
+    Pair pair;
+  };
+  std::vector<Between> met;
+  for (std::size_t n = 0; n < speeds.size(); ++n)
+    for_each_pair(known[n].size(), [&](const Pair& p) {
+      constexpr double near =
+          0.05;  // of the sum: farther off only what would be no small change grows
+      if (std::abs(off(n, p)) < near * (known[n][p.i] + known[n][p.j])) look(speeds[n], p);
+      const bool behind = n + 1 < speeds.size() && known[n + 1].size() > std::max(p.i, p.j);
+      if (!behind || (off(n, p) < 0) == (off(n + 1, p) < 0)) return;
+      const std::vector<Shape>& s = search.shapes_at(speeds[n]);
+      const double decay = 0.5 * (s[p.i].growth + s[p.j].growth);
+      // half of the growth that damping takes is not there: what changes between the speeds makes it no more
+      if (search.growth(speeds[n], p, 0.0) > 0.5 * decay) met.push_back({n, p});
+    });
+  for (const Between& b : met)
+    look(meeting(search, b.pair, speeds[b.n], speeds[b.n + 1]), b.pair);
+  std::sort(out.begin(), out.end(),
+            [](const PassingGrowth& a, const PassingGrowth& b) { return a.growth > b.growth; });
+  return out;
+}
+
+}  // namespace whirl::analysis
