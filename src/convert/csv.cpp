@@ -66,7 +66,8 @@ const std::vector<Meaning>& station_meanings() {
 
 const std::vector<Meaning>& coefficient_meanings() {
   static const std::vector<Meaning> t = [] {
-    std::vector<Meaning> r = {{"speed", "rad/s", {"speed", "rpm", "n", "omega", "frequency"}}};
+    std::vector<Meaning> r = {{"speed", "rad/s", {"speed", "rpm", "n", "omega"}},
+                              {"frequency", "rad/s", {"frequency", "excitationfrequency"}}};
     // x, y across are y, z here; z along is x
     static constexpr std::array<std::array<const char*, 2>, 5> pairs{
         {{"xx", "yy"}, {"xy", "yz"}, {"yx", "zy"}, {"yy", "zz"}, {"zz", "xx"}}};
@@ -229,12 +230,13 @@ double at(const Column* c, std::size_t row, double absent) {
 
 std::string coefficient_table(const CellTable& cells, Notes& notes) {
   const auto columns = TableReader(cells, coefficient_meanings(), notes).read();
-  const Column* speed = find(columns, "speed");
+  const Column *speed = find(columns, "speed"), *frequency = find(columns, "frequency");
+  if (!speed) std::swap(speed, frequency);  // synchronous: one stands for the other
   if (!speed) notes.refuse("there is no column of speeds", "a title like 'speed [rpm]'");
-  std::string out = "speed[rpm]";
+  std::string out = frequency ? "speed[rpm],frequency[Hz]" : "speed[rpm]";
   std::vector<std::pair<const Column*, const char*>> shown;
   for (const Column& c : columns) {
-    if (c.key == "speed") continue;
+    if (&c == speed || &c == frequency) continue;
     const char* unit = c.key[0] == 'k' ? "N/m" : c.key[0] == 'c' ? "N.s/m" : "kg";
     shown.emplace_back(&c, unit);
     out += fmt::format(",{}[{}]", c.key, unit);
@@ -243,14 +245,20 @@ std::string coefficient_table(const CellTable& cells, Notes& notes) {
   std::vector<std::size_t> order(cells.rows.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     order[k] = k;
-  for (const std::size_t k : order)
+  for (const std::size_t k : order) {
     if (!speed->values[k])
       notes.refuse("a row without a speed", {}, {}, cells.rows[k].front().line);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return *speed->values[a] < *speed->values[b];
-  });
+    if (frequency && !frequency->values[k])
+      notes.refuse("a row without a frequency", {}, {}, cells.rows[k].front().line);
+  }
+  const auto place = [&](std::size_t k) {
+    return std::pair(*speed->values[k], frequency ? *frequency->values[k] : 0.0);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
   for (const std::size_t k : order) {
     out += units::format_number(cell(*speed->values[k], "rpm").real);
+    if (frequency) out += "," + units::format_number(cell(to_hz(*frequency->values[k]), "Hz").real);
     for (const auto& [c, unit] : shown) {
       if (!c->values[k])
         notes.refuse(fmt::format("a row without '{}'", c->key), {}, {}, cells.rows[k].front().line);
@@ -494,6 +502,17 @@ Converted convert_csv(const std::string& text, const std::string& name) {
   c.is_table = std::any_of(cells.header.begin(), cells.header.end(), [](const Cell& h) {
     return letters(split_title(h.text).name) == "kxx";
   });
+  const auto own = std::find_if(cells.header.begin(), cells.header.end(), [](const Cell& h) {
+    const std::string title = letters(split_title(h.text).name);
+    return title == "kzz" || title == "kyz" || title == "kzy";
+  });
+  if (!c.is_table && own != cells.header.end())
+    notes.refuse(
+        fmt::format("'{}' is a title of this program's own, whose axes across are y and z",
+                    own->text),
+        fmt::format("a deck reads the table as it is: [[bearing]] type = \"table\", file = \"{}\"",
+                    name),
+        {}, own->line);
   c.text = c.is_table ? coefficient_table(cells, notes) : StationDeck(cells, notes).write();
   c.left_out = notes.take();
   return c;

@@ -292,7 +292,10 @@ std::string stability_text(const analysis::SpectrumCertificate& c) {
 
 io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
   io::Table t;
-  t.title = "Motions that do not oscillate, or hardly (damping ratio above 0.949)";
+  t.title =
+      "Motions that do not oscillate, or hardly (damping ratio above 0.949); of those that decay "
+      "fastest "
+      "some may be missing";
   t.columns = {{"rate", "1/s", "of exp(rate t); positive: grows"},
                {"frequency", "Hz", "of what is left of an oscillation"},
                {"damping ratio", "-", ""},

@@ -453,6 +453,28 @@ TEST(Convert, CoefficientsOfASpreadsheet) {
   EXPECT_EQ(first.substr(0, 18), "1000,8756.34176232");
 }
 
+TEST(Convert, CoefficientsKeepTheirFrequencies) {
+  const Converted c = convert::convert_csv(
+      "speed[rpm],frequency[Hz],Kxx[N/m]\n3000,50,4\n1000,100,2\n3000,100,5\n1000,50,1\n", "h.csv");
+  EXPECT_EQ(c.text,
+            "speed[rpm],frequency[Hz],kyy[N/m]\n1000,50,1\n1000,100,2\n3000,50,4\n3000,100,5\n");
+  // synchronous ones have one of the two
+  EXPECT_EQ(convert::convert_csv("frequency[Hz],Kxx[N/m]\n50,4\n", "h.csv").text,
+            "speed[rpm],kyy[N/m]\n3000,4\n");
+}
+
+TEST(Convert, TablesOfThisProgramAreNamed) {
+  try {
+    convert::convert_csv("speed[rpm],kyy[N/m],kyz[N/m],kzy[N/m],kzz[N/m]\n1000,1,2,3,4\n", "e.csv");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(e.diagnostics().front().message.find("'kyz[N/m]' is a title of this program's own"),
+              std::string::npos)
+        << e.diagnostics().front().message;
+    EXPECT_NE(e.diagnostics().front().hint.find("file = \"e.csv\""), std::string::npos);
+  }
+}
+
 TEST(Convert, ColumnsWithoutUnitsAreRefused) {
   try {
     convert::convert_csv("Length,OD [mm]\n1,2\n", "x.csv");
