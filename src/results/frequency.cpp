@@ -414,29 +414,22 @@ void FrequencyStep::finish(const std::string& line) {
   section.text += fmt::format(" Linearised {}.", about_);
   if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
   warn_of_mean_stiffness();
-  warn_of_passing_teeth();
+  say_passing_teeth();
   run::ProgressLine(step.name, job.options.quiet)
       .done(fmt::format("{}{}, {}, {}", line, also_, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
 }
 
-void FrequencyStep::warn_of_passing_teeth() {
+void FrequencyStep::say_passing_teeth() {
   if (type_ == "stability" || stands(step.law)) return;  // which looks at what they do
   std::vector<analysis::PassingParts> parts = passing_parts(job);
   std::erase_if(parts, [](const analysis::PassingParts& p) { return !p.meshes; });
   if (parts.empty()) return;
-  const std::string what = fmt::format(
-      "the stiffness of {} enters as its mean over a tooth; where the frequency of the teeth, or a "
-      "multiple, "
-      "is the sum of two natural frequencies, motion may grow that is not seen here",
-      names_of(parts));
-  section.text += " " + capital(what) + ".";
-  Diagnostic d;
-  d.code = "W14";
-  d.message = fmt::format("step '{}': {}", step.name, what);
-  d.hint = "a stability step looks for such growth, a transient follows the teeth";
-  warn(job, std::move(d));
+  assume(
+      fmt::format("the stiffness of {} is its mean over a tooth; what the change may make grow, a "
+                  "stability step looks for",
+                  names_of(parts)));
 }
 
 void FrequencyStep::warn_of_mean_stiffness() {

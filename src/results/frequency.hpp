@@ -90,8 +90,8 @@ class FrequencyStep {
   void say_open_gears();
   /// W14, where the step takes the mean of a stiffness that turns.
   void warn_of_mean_stiffness();
-  /// W14, where gears enter with their mean stiffness and nothing looks at what the change does.
-  void warn_of_passing_teeth();
+  /// Gears of varying stiffness enter with its mean, and nothing looks at what the change does.
+  void say_passing_teeth();
   std::string type_, about_, claim_, also_;
   double top_speed_;
   int load_steps_;

@@ -261,14 +261,19 @@ struct Jumps {
   double time = 0, speed = 0, angle = 0;  ///< the largest: s, rad/s, rad
 };
 Jumps jumps_of(const Law& angle, double from, double to) {
-  constexpr double seen = 1e-3;  // of the speed
+  constexpr double seen = 1e-3;  // of the largest speed
+  double fastest = std::abs(angle.at(from).df);
+  for (const double t : angle.breakpoints())
+    if (t >= from && t <= to)
+      fastest = std::max(
+          {fastest, std::abs(angle.at(t).df), std::abs(angle.at(std::nextafter(t, -infinity)).df)});
   Jumps out;
   for (const double t : angle.breakpoints()) {
     if (t <= from || t > to) continue;
     const LawValue left = angle.at(std::nextafter(t, -infinity)), right = angle.at(t);
     const double speed = right.df - left.df, turned = right.f - left.f;
     const bool leaps = std::abs(turned) > 1e-9 * (1.0 + std::abs(right.f));
-    const bool jumps = std::abs(speed) > seen * std::max(std::abs(left.df), std::abs(right.df));
+    const bool jumps = std::abs(speed) > seen * fastest;
     if (!leaps && !jumps) continue;
     const bool larger = leaps ? std::abs(turned) > std::abs(out.angle)
                               : out.angle == 0.0 && std::abs(speed) > std::abs(out.speed);
