@@ -545,7 +545,10 @@ std::vector<analysis::PassingParts> passing_parts(const run::Job& job) {
     auto it = std::find_if(out.begin(), out.end(), [&](const analysis::PassingParts& p) {
       return std::abs(p.rate - rate) < 1e-9 * rate;
     });
-    if (it == out.end()) it = out.insert(out.end(), {.rate = rate});
+    if (it == out.end()) {
+      it = out.emplace(out.end());
+      it->rate = rate;
+    }
     it->meshes = it->meshes || law.pair->has_value();
     it->names.push_back(
         fmt::format("{} '{}'", law.pair->has_value() ? (**law.pair).noun : "bearing", b.name));

@@ -1,6 +1,7 @@
 // Where a motion in time leaves what its supports are known for: tables held beyond their ends
 // (W12), films pressed further than they are believed (W03), gaps that small motions do not know
 // (W11).
+#include <analysis/transient/linear_motion.hpp>
 #include <results/clearances.hpp>
 #include <results/linear_limits.hpp>
 #include <results/transient_output.hpp>
