@@ -294,7 +294,9 @@ GridDrive FiniteJournal::drive(std::size_t k, const FilmPoint& p) const {
   const PadMedium m = medium(k, p);
   const PadPlace at = place(k, p);
   const Vec2 W = source_of(at, p.slip, g.pad);
-  return {at.e, Vec3(W.x(), W.y(), 0.5 * p.slip), g.pad, m.reynolds, m.edge, m.log_viscosity};
+  return {
+      at.e,           Vec3(W.x(), W.y(), 0.5 * p.slip), g.pad, m.reynolds, m.edge, m.log_viscosity,
+      mass_conserving};
 }
 
 namespace {
@@ -357,15 +359,17 @@ void FiniteJournal::evaluate_on_grid(const FilmPoint& p, FilmForce& f, FilmTange
     source_slip << -0.5 * g.lift * across, 0.5;
     const double reynolds_slip = std::copysign(turbulent_density * radius * c / viscosity, p.slip);
     const Vec3 z_slip = by.by_source * source_slip + reynolds_slip * by.by_reynolds;
+    const double shear_slip =
+        by.shear_by_source.dot(source_slip) + reynolds_slip * by.shear_by_reynolds;
     f.F -= unit * load.z.head<2>();
     t.F_r -= unit / c * by.by_e.topRows<2>();
     t.F_w -= unit * by.by_source.topLeftCorner<2, 2>();
     t.F_slip -= unit * z_slip.head<2>();
     f.T += unit * row.dot(load.z) - drag * p.slip * load.shear;
     t.T_r += unit / c * (row * by.by_e).transpose() - drag * p.slip / c * by.shear_by_e;
-    t.T_w += unit * (row * by.by_source).head<2>().transpose();
-    t.T_slip += unit * row.dot(z_slip) -
-                drag * (load.shear + p.slip * reynolds_slip * by.shear_by_reynolds);
+    t.T_w += unit * (row * by.by_source).head<2>().transpose() -
+             drag * p.slip * by.shear_by_source.head<2>();
+    t.T_slip += unit * row.dot(z_slip) - drag * (load.shear + p.slip * shear_slip);
     f.pump += unit * in.edge * (load.fed + load.normal);
   }
 }

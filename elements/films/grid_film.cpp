@@ -1,4 +1,5 @@
 #include <elements/films/grid_film.hpp>
+#include <elements/films/grid_solver.hpp>
 #include <elements/films/pad_film.hpp>
 #include <core/contract.hpp>
 #include <core/error.hpp>
@@ -157,134 +158,6 @@ void GridPad::add_rows(const std::vector<double>& elements, const std::vector<do
   }
 }
 
-/// One state of a pad. Nodes are numbered row by row within a column of cells; a round pad is folded, so
-/// that its first and last columns are neighbours.
-class GridPad::Solver {
- public:
-  Solver(const GridPad& pad, const GridDrive& in, bool with_slopes)
-      : pad_(pad),
-        in_(in),
-        n_(pad.cells_.size()),
-        m_(pad.rows_.size()),
-        bands_(pad.bands_),
-        half_(pad.round_ ? 2 * m_ : m_),
-        size_(n_ * m_),
-        slopes_(with_slopes) {
-    for (std::size_t i = 0; i < n_; ++i) {
-      const std::array<double, 4> mu = viscosity(i);
-      for (std::size_t g = 0; g < bands_; ++g)
-        add_resistance(i, g, mu);
-    }
-    number_columns();
-    add_conductances();
-    add_sources();
-    find_film();
-  }
-
-  void loads(GridLoad& out) const;
-  void slopes(GridSlopes& out);
-  GridField field() const;
-
- private:
-  static constexpr std::size_t most = static_cast<std::size_t>(most_columns) * most_rows;
-  static constexpr std::size_t most_band = 2 * most_rows + 1;
-  /// A stretch along the arc: int 1/(a h^3), int D/(a h^3), int D^2/(a h^3); slopes by e_y, e_z,
-  /// reynolds.
-  struct Stretch {
-    double r = 0, s = 0, square = 0;
-    Vec3 dr = Vec3::Zero(), ds = Vec3::Zero(), dsquare = Vec3::Zero();
-  };
-  /// Half a cell; a type that takes no time to make.
-  struct Half {
-    double r, s, square;
-    Vec3 dr, ds, dsquare;
-    void clear() {
-      r = s = square = 0.0;
-      dr.setZero();
-      ds.setZero();
-      dsquare.setZero();
-    }
-  };
-  /// A whole cell: int a h^3, for the flow along the axis.
-  struct Section {
-    double g;
-    Vec3 dg;
-  };
-  /// In place of a neighbour: the groove at an end of the pad, the free side of the bearing, nothing.
-  static constexpr std::size_t groove = ~std::size_t{0}, side = groove - 1;
-
-  std::array<double, 4> viscosity(std::size_t i) const;
-  void add_resistance(std::size_t i, std::size_t g, const std::array<double, 4>& mu);
-  void number_columns();
-  void add_conductances();
-  void add_sources();
-  void find_film();
-  bool take_film(double least, bool may_form);
-  template <class Link>
-  void for_each_link(const Link& link) const;
-  void add_flow(GridField& out) const;
-  void add_heat(GridField& out) const;
-  double to_front(std::size_t before, std::size_t wet) const;
-  void clear_matrix() { std::fill_n(a_.begin(), size_ * (2 * half_ + 1), 0.0); }
-  void couple(std::size_t k, std::size_t l, double by);
-  void factor();
-  void solve(double* x) const;
-  void solve_transposed(double* x) const;
-
-  const std::vector<Piece>& pieces(std::size_t j) const { return pad_.rows_[j].pieces; }
-  std::size_t at(std::size_t i, std::size_t j) const { return place_[i] * m_ + j; }
-  std::size_t node(std::size_t i, std::size_t j) const { return i == groove ? groove : at(i, j); }
-  /// Faces along the arc: f between cells f - 1 and f; n_ + 1 of them, n_ when round.
-  std::size_t faces() const { return pad_.round_ ? n_ : n_ + 1; }
-  std::size_t left_of(std::size_t f) const {
-    if (f > 0) return f - 1;
-    return pad_.round_ ? n_ - 1 : groove;
-  }
-  std::size_t right_of(std::size_t f) const { return f < n_ ? f : groove; }
-  Stretch face(std::size_t f, std::size_t g) const {
-    Stretch out;
-    const std::size_t l = left_of(f), r = right_of(f);
-    for (const auto& [cell, half] : {std::pair{l, std::size_t{1}}, std::pair{r, std::size_t{0}}}) {
-      if (cell == groove) continue;
-      const Half& h = half_cells_[(2 * cell + half) * bands_ + g];
-      out.r += h.r;
-      out.s += h.s;
-      out.square += h.square;
-      if (!slopes_) continue;
-      out.dr += h.dr;
-      out.ds += h.ds;
-      out.dsquare += h.dsquare;
-    }
-    return out;
-  }
-  double& entry(std::size_t row, std::size_t column) {
-    return a_[row * (2 * half_ + 1) + half_ + column - row];
-  }
-  double pressure(std::size_t k) const { return k == groove ? in_.edge : k == side ? 0.0 : P_[k]; }
-  /// Of a pressure that is given.
-  bool known(std::size_t k) const { return k >= side || open_[k] != 0; }
-  bool wet(std::size_t k) const { return k < side && film_[k] != 0; }
-  std::size_t far_node(std::size_t i, const Across& x) const {
-    return x.to < m_ ? at(i, x.to) : side;
-  }
-
-  const GridPad& pad_;
-  const GridDrive& in_;
-  std::size_t n_, m_, bands_, half_, size_;
-  bool slopes_;
-  double shear_ = 0;
-  Vec3 dshear_ = Vec3::Zero();
-  std::array<std::size_t, most_columns> place_;
-  std::array<Half, 2 * most_columns * most_bands> half_cells_;
-  std::array<Section, most_columns * most_bands> sections_;
-  std::array<double, (most_columns + 1) * most_rows> along_;  ///< conductance of face f in row j
-  std::array<double, most> P_, b_, inflow_;
-  std::array<double, 3 * most> lambda_;
-  std::array<std::array<double, most>, 3> B_;
-  std::array<unsigned char, most> film_, open_;
-  std::array<double, most * most_band> a_;
-};
-
 /// At the points of cell i, over that of reference.
 std::array<double, 4> GridPad::Solver::viscosity(std::size_t i) const {
   std::array<double, 4> mu{1.0, 1.0, 1.0, 1.0};
@@ -307,6 +180,8 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g,
   const bool open = pad_.open(i, g);
   const double share = pad_.band_shares_[g];
   Section section{0.0, Vec3::Zero()};
+  double walls = 0.0;
+  Vec3 dwalls = Vec3::Zero();
   for (std::size_t half = 0; half < 2; ++half) {
     Half sum;
     sum.clear();
@@ -331,7 +206,7 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g,
       sum.s += D * r;
       sum.square += D * D * r;
       section.g += x.weight * cube / (mu[q] * across);
-      if (!open) shear_ += share * x.weight * mu[q] * wall / h;
+      walls += open ? 0.0 : x.weight * mu[q] * wall / h;
       if (!slopes_) continue;
       Vec3 d_arg = in_.reynolds / mu[q] * dh;  // of reynolds h/mu
       d_arg[2] = h / mu[q];
@@ -341,11 +216,15 @@ void GridPad::Solver::add_resistance(std::size_t i, std::size_t g,
       sum.dsquare += D * D * dr;
       section.dg += x.weight / mu[q] *
                     (3.0 * h * h / across * dh - cube * d_across / (across * across) * d_arg);
-      if (!open) dshear_ += share * x.weight * mu[q] / h * (d_wall * d_arg - wall / h * dh);
+      if (!open) dwalls += x.weight * mu[q] / h * (d_wall * d_arg - wall / h * dh);
     }
     half_cells_[(2 * i + half) * bands_ + g] = sum;
   }
   sections_[i * bands_ + g] = section;
+  walls_[i * bands_ + g] = walls;
+  dwalls_[i * bands_ + g] = dwalls;
+  shear_ += share * walls;
+  dshear_ += share * dwalls;
 }
 
 void GridPad::Solver::number_columns() {
@@ -365,23 +244,6 @@ void GridPad::Solver::add_conductances() {
       along_[f * m_ + j] = sum;
     }
   }
-}
-
-/// link(k, l, conductance, before, behind) for all pairs k, l of nodes that touch; along the arc with
-/// the nodes before k and behind l. Either may be `groove`, l `side`.
-template <class Link>
-void GridPad::Solver::for_each_link(const Link& link) const {
-  for (std::size_t f = 0; f < faces(); ++f) {
-    const std::size_t l = left_of(f), r = right_of(f);
-    const std::size_t before = l == groove ? groove : left_of(l);
-    const std::size_t behind = r == groove ? groove : right_of(pad_.round_ ? (r + 1) % n_ : r + 1);
-    for (std::size_t j = 0; j < m_; ++j)
-      link(node(l, j), node(r, j), along_[f * m_ + j], node(before, j), node(behind, j));
-  }
-  for (std::size_t i = 0; i < n_; ++i)
-    for (const Across& x : pad_.across_)
-      link(at(i, x.from), far_node(i, x), x.conductance * sections_[i * bands_ + x.band].g, groove,
-           groove);
 }
 
 void GridPad::Solver::add_sources() {
@@ -420,9 +282,10 @@ void GridPad::Solver::add_sources() {
 void GridPad::Solver::couple(std::size_t k, std::size_t l, double by) {
   if (wet(k)) entry(k, k) += by;
   if (wet(l)) entry(l, l) += by;
-  if (!wet(k) || !wet(l)) return;
-  entry(k, l) -= by;
-  entry(l, k) -= by;
+  if (known(k) || known(l)) return;
+  // ruptured film keeps what flows into it where mass is conserved
+  if (wet(k) && (wet(l) || carries_)) entry(l, k) -= by;
+  if (wet(l) && (wet(k) || carries_)) entry(k, l) -= by;
 }
 
 /// Distance from a node with film, the last one, to where the film ends, over that of the nodes.
@@ -437,10 +300,11 @@ double GridPad::Solver::to_front(std::size_t before, std::size_t last) const {
   return curvature > P_[last] ? 0.5 + P_[last] / curvature : 1.5;
 }
 
-/// The matrix of the nodes with film in two triangles; dry nodes and open recesses stand apart.
+/// The matrix of the nodes with film in two triangles; open recesses stand apart, as do dry nodes that
+/// carry nothing on.
 void GridPad::Solver::factor() {
   for (std::size_t k = 0; k < size_; ++k) {
-    if (!film_[k]) {
+    if (!film_[k] && (!carries_ || open_[k])) {
       entry(k, k) = 1.0;
       continue;
     }
@@ -566,33 +430,55 @@ void GridPad::Solver::loads(GridLoad& out) const {
     if (known(k) && !known(l)) out.fed += by * (pressure(k) - pressure(l));
     if (known(l) && !known(k)) out.fed += by * (pressure(l) - pressure(k));
   });
-  out.shear = shear_;
+  out.shear = carries_ ? shear_carried() : shear_;
+}
+
+/// How far the film of a link of which one node is dry reaches, over the distance of the nodes.
+double GridPad::Solver::to_front_of_link(std::size_t k, std::size_t l, std::size_t before,
+                                         std::size_t behind) const {
+  if (known(k) || known(l) || wet(k) == wet(l)) return 1.0;
+  // a film forms of carried oil with a slope, and what it gives back upstream comes again
+  if (wet(k)) return carries_ && !forward() ? 1.0 : to_front(before, k);
+  return carries_ && forward() ? 1.0 : to_front(behind, l);
 }
 
 void GridPad::Solver::slopes(GridSlopes& out) {
-  out = {};
   // a change of the pressure is none where the film ends: between two nodes
   clear_matrix();
   for_each_link(
       [&](std::size_t k, std::size_t l, double by, std::size_t before, std::size_t behind) {
-        if (wet(k) && !known(l) && !wet(l)) by /= to_front(before, k);
-        if (wet(l) && !known(k) && !wet(k)) by /= to_front(behind, l);
-        couple(k, l, by);
+        couple(k, l, by / to_front_of_link(k, l, before, behind));
       });
-  factor();
-  const auto lambda = [&](int k) { return lambda_.data() + static_cast<std::size_t>(k) * most; };
-  for (int k = 0; k < 3; ++k) {
-    double* x = lambda(k);
+  LoadSlopes to;
+  for (int k = 0; k < 3; ++k)
     for (std::size_t c = 0; c < size_; ++c)
-      x[c] = film_[c] ? B_[static_cast<std::size_t>(k)][c] : 0.0;
-    solve_transposed(x);
-    for (int l = 0; l < 3; ++l)
-      for (std::size_t c = 0; c < size_; ++c)
-        if (film_[c]) out.by_source(k, l) += x[c] * B_[static_cast<std::size_t>(l)][c];
+      adjoint(k)[c] = film_[c] ? B_[static_cast<std::size_t>(k)][c] : 0.0;
+  if (carries_) {
+    couple_carried();
+    add_shear_slopes(to);
   }
-  Matrix<3, 3> by = Matrix<3, 3>::Zero();  // rows: loads, columns: e and reynolds
-  const auto value = [&](int k, std::size_t c) { return c >= side ? 0.0 : lambda(k)[c]; };
+  factor();
+  for (int k = 0; k < (carries_ ? 4 : 3); ++k) {
+    solve_transposed(adjoint(k).data());
+    for (std::size_t l = 0; l < 3; ++l)
+      for (std::size_t c = 0; c < size_; ++c)
+        to.by_source(k, static_cast<Index>(l)) += adjoint(k)[c] * B_[l][c];
+  }
+  if (carries_) add_slopes_of_squeeze(to);
+  add_slopes_of_flows(to);
+  out.by_source = to.by_source.topRows<3>();
+  out.by_e = to.by.topLeftCorner<3, 2>();
+  out.by_reynolds = to.by.col(2).head<3>();
+  out.shear_by_source = to.by_source.row(3).transpose();
+  out.shear_by_e = (carries_ ? Vec3(to.by.row(3).transpose()) : dshear_).head<2>();
+  out.shear_by_reynolds = carries_ ? to.by(3, 2) : dshear_[2];
+}
+
+/// What e and the Reynolds number change in the flows between nodes.
+void GridPad::Solver::add_slopes_of_flows(LoadSlopes& to) {
+  const int loads = carries_ ? 4 : 3;
   const double S = in_.source[2];
+  const auto value = [&](int k, std::size_t c) { return c >= side ? 0.0 : adjoint(k)[c]; };
   for (std::size_t f = 0; f < faces(); ++f)
     for (std::size_t g = 0; g < bands_; ++g) {
       const Stretch x = face(f, g);
@@ -605,10 +491,10 @@ void GridPad::Solver::slopes(GridSlopes& out) {
           const std::size_t l = node(left_of(f), j), r = node(right_of(f), j);
           const double step = pressure(r) - pressure(l), q = (S * x.s - step) / x.r;
           const Vec3 dq = piece.share / x.r * (S * x.ds - q * x.dr);
-          for (int k = 0; k < 3; ++k)
-            by.row(k) += (value(k, r) - value(k, l)) * dq.transpose();
-          by.row(2) += piece.share * (step / x.r * dmean + S * dspread).transpose();
-          out.by_source(2, 2) += piece.share * (x.square - mean * x.s);
+          for (int k = 0; k < loads; ++k)
+            to.by.row(k) += (value(k, r) - value(k, l)) * dq.transpose();
+          to.by.row(2) += piece.share * (step / x.r * dmean + S * dspread).transpose();
+          to.by_source(2, 2) += piece.share * (x.square - mean * x.s);
         }
     }
   for (std::size_t i = 0; i < n_; ++i)
@@ -616,13 +502,9 @@ void GridPad::Solver::slopes(GridSlopes& out) {
       const std::size_t k = at(i, x.from), l = far_node(i, x);
       const Vec3 dq =
           (pressure(k) - pressure(l)) * x.conductance * sections_[i * bands_ + x.band].dg;
-      for (int row = 0; row < 3; ++row)
-        by.row(row) += (value(row, l) - value(row, k)) * dq.transpose();
+      for (int row = 0; row < loads; ++row)
+        to.by.row(row) += (value(row, l) - value(row, k)) * dq.transpose();
     }
-  out.by_e = by.leftCols<2>();
-  out.by_reynolds = by.col(2);
-  out.shear_by_e = dshear_.head<2>();
-  out.shear_by_reynolds = dshear_[2];
 }
 
 GridField GridPad::Solver::field() const {
@@ -662,14 +544,10 @@ GridField GridPad::Solver::field() const {
     }
     if (!shown) out.thickness.push_back(0.0);
   }
-  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
-    const double q = by * (pressure(k) - pressure(l));
-    if (l == side) out.side += q;
-    if (k >= side || l >= side) return;
-    if (open_[l] && !open_[k]) out.into_open += q;
-    if (open_[k] && !open_[l]) out.into_open -= q;
-  });
-  add_flow(out);
+  if (carries_)
+    add_carried_flow(out);
+  else
+    add_flow(out);
   add_heat(out);
   return out;
 }
@@ -679,6 +557,13 @@ GridField GridPad::Solver::field() const {
 void GridPad::Solver::add_flow(GridField& out) const {
   const double S = in_.source[2];
   const bool forward = S >= 0.0;
+  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    const double q = by * (pressure(k) - pressure(l));
+    if (l == side) out.side += q;
+    if (k >= side || l >= side) return;
+    if (open_[l] && !open_[k]) out.into_open += q;
+    if (open_[k] && !open_[l]) out.into_open -= q;
+  });
   out.flow.assign(n_ + 1, 0.0);
   for (std::size_t f = 0; f <= n_; ++f)
     out.face_place.push_back(f < n_ ? pad_.cells_[f].from : pad_.cells_[n_ - 1].to);

@@ -22,6 +22,10 @@
 // closer to the truth than slopes of the discrete loads: those jump by some 1e-2 as cells dry, the loads
 // themselves by less than 1e-3.
 //
+// Films that conserve mass carry what flows into ruptured nodes on along the arc, at no pressure, and form
+// where that fills the gap (Elrod; grid_film_carried.cpp). Every node is in balance to rounding, so that
+// what comes in through a groove leaves. Oil takes no time on its way.
+//
 // With N = (W_y, W_z, S) and B the source of each, loads are z = B^T P: the force over (unit R L), and
 // the moment of pressure on the steps and slopes of recesses over (-unit R L/2).
 #pragma once
@@ -49,18 +53,23 @@ struct GridDrive {
   double edge = 0;             ///< pressure at the ends of the pad and in open recesses
   /// ln mu along the pad, as PadMedium::log_viscosity; empty: mu = 1.
   std::span<const double> log_viscosity{};
+  /// Ruptured film carries on what oil there is, and the next one forms where that fills the gap.
+  /// S = 0, or a round pad: no difference.
+  bool carries = false;
 };
 
 struct GridLoad {
   Vec3 z = Vec3::Zero();  ///< loads; of the pressure over that of the edge
   double fed = 0;         ///< flow that the pressure of the edge drives in
   double normal = 0;      ///< what the sources bring where the pressure is that of the edge
-  double shear = 0;       ///< int int mu f_s/h dtheta dzeta
+  double shear = 0;  ///< int int mu f_s/h dtheta dzeta, where film that conserves mass has ruptured
+                     ///< over the share that its oil wets
 };
 struct GridSlopes {
   Matrix<3, 3> by_source = Matrix<3, 3>::Zero();
   Matrix<3, 2> by_e = Matrix<3, 2>::Zero();
   Vec3 by_reynolds = Vec3::Zero();
+  Vec3 shear_by_source = Vec3::Zero();
   Vec2 shear_by_e = Vec2::Zero();
   double shear_by_reynolds = 0;
 };

@@ -15,13 +15,14 @@ bool moves_at_large(const model::Step& s) {
   return transient && !transient->linear;
 }
 
-/// The film of a bearing whose oil can be followed conserves mass.
-bool conserves_mass(const model::BearingLaw& law) {
-  using Cavitation = model::FilmFlow::Cavitation;
-  if (const auto* film = std::get_if<model::FiniteJournal>(&law))
-    return film->flow.cavitation == Cavitation::mass_conserving;
+/// The film of a bearing conserves mass, and its oil can be followed.
+bool has_cells(const model::BearingLaw& law) {
+  const auto followed = [](const auto& x) {
+    return x.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving && x.rows == 0;
+  };
+  if (const auto* film = std::get_if<model::FiniteJournal>(&law)) return followed(*film);
   const auto* pads = std::get_if<model::TiltingPadJournal>(&law);
-  return pads && pads->flow.cavitation == Cavitation::mass_conserving;
+  return pads && followed(*pads);
 }
 
 template <bool Offsets>
@@ -55,7 +56,7 @@ void add_cells(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 bool follows_oil(const model::Model& m, const model::Step& step) {
   return moves_at_large(step) &&
          std::any_of(m.bearings.begin(), m.bearings.end(),
-                     [](const model::Bearing& b) { return conserves_mass(b.law); });
+                     [](const model::Bearing& b) { return has_cells(b.law); });
 }
 
 std::vector<PadCells> add_oil_nodes(
@@ -87,6 +88,7 @@ std::vector<PadCells> add_oil_nodes(
 
 bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                       const elements::FiniteJournal& film) {
+  if (!film.mass_conserving || film.grid) return false;
   std::vector<std::shared_ptr<const elements::CarriedPad>> pads;
   for (std::size_t k = 0; k < film.surface->arcs().size(); ++k)
     pads.push_back(std::make_shared<const elements::CarriedPad>(film, k));

@@ -287,7 +287,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       return out;
     };
     film->kept_from = add_film_bearing(a, b, law.flow, law.oil, film->surface->arcs().size(), pads);
-    if (film->mass_conserving && add_carried_film(a, b, n, *film))
+    if (add_carried_film(a, b, n, *film))
       add_film_condition(a, b, n, elements::FilmLaw<elements::FiniteJournal>{*film}, law.clearance);
     else
       add_film(a, b, n, *film, law.clearance);

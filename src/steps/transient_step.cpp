@@ -330,6 +330,24 @@ void warn_of_pairs(run::Job& job, const model::Step& step, const run::StepState&
   }
 }
 
+/// Oil of films on a grid along the axis takes no time where these have ruptured.
+void warn_of_momentary_oil(run::Job& job, const model::Step& step) {
+  const auto momentary = [](const auto& law) {
+    return law.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving && law.rows > 0;
+  };
+  for (const model::Bearing& b : job.model.bearings) {
+    const auto* journal = std::get_if<model::FiniteJournal>(&b.law);
+    const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
+    if (!(journal && momentary(*journal)) && !(pads && momentary(*pads))) continue;
+    results::warn_of_step(
+        job, step,
+        fmt::format("bearing '{}': on a grid along the axis the oil of ruptured film is not "
+                    "followed: it comes to the next film in no time, and the film is that of the "
+                    "momentary state",
+                    b.name));
+  }
+}
+
 /// From where a resumed step goes on; nothing: from its beginning.
 std::optional<run::Checkpoint> resumed_from(const run::Job& job,
                                             const std::filesystem::path& file) {
@@ -441,6 +459,7 @@ void TransientRun::warn_of_start() const {
     warn_of_pairs(job_, step_, start_);
   warn_of_jumping_laws(job_, step_, law_, start_);
   results::warn_of_changing_loads(job_, step_, law_, start_);
+  if (!law_.linear) warn_of_momentary_oil(job_, step_);
   if (law_.own_speed() && (job_.goes_on_in_motion(step_) || other_run))
     results::warn_of_step(
         job_, step_,

@@ -299,9 +299,6 @@ void film_grid(Visitor& v, Law& b, const char* without) {
     v.error("E14", "axial_grid", "a grid along the axis has 3 to 8 rows over half the length");
   if (!v.clean() || b.rows == 0) return;
   if (!points) b.nodes = 240;
-  if (b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving)
-    v.error("E26", "cavitation", "films that conserve mass have one profile along the axis",
-            "a surface that is the same all along the axis, with axial_grid = 0");
 }
 
 }  // namespace
