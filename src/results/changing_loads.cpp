@@ -106,7 +106,14 @@ void warn_of_changing_loads(run::Job& job, const model::Step& step, const model:
   analysis::ModesOptions o;
   o.count = slowest;
   o.certify = false;
-  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(at_start, start.speed, o);
+  std::vector<analysis::WhirlMode> modes;
+  try {
+    modes = analysis::whirl_modes(at_start, start.speed, o);
+  } catch (const Error& e) {  // a table that ends below them
+    return warn_of_step(job, step,
+                        "whether loads that change move natural frequencies is not judged: " +
+                            e.diagnostics().front().message);
+  }
   for (const Look& look : looks) {
     std::string what;
     try {

@@ -8,13 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 
 namespace whirl::analysis {
 
 namespace {
 
 /// Samples of one pass: twice the multiples at least, and enough that none of them is taken for another.
-constexpr int samples_of_a_pass = 64;
+constexpr int samples_of_a_pass = 32;
 
 /// A motion and what its amplitude is divided by.
 struct Shape {
@@ -39,11 +40,19 @@ class PassingSearch {
         options_(options),
         solver_(linear, modes_of(options)),
         workspace_(linear.system().make_workspace()),
-        matrices_(linear.system().make_matrices()),
-        own_(matrices_.K) {}
+        matrices_(linear.system().make_matrices()) {
+    for (const PassingParts& p : parts) {
+      std::vector<Index>& own = nodes_.emplace_back();
+      for (const auto& between : p.nodes)
+        std::copy_if(between.begin(), between.end(), std::back_inserter(own),
+                     [](Index n) { return n >= 0; });
+      std::sort(own.begin(), own.end());
+      own.erase(std::unique(own.begin(), own.end()), own.end());
+    }
+  }
 
   const std::vector<Shape>& shapes_at(double Omega) {
-    if (!shapes_.empty() && speed_ == Omega) return shapes_;
+    if (speed_ == Omega) return shapes_;
     speed_ = Omega;
     shapes_.clear();
     joined_.assign(parts_.size(), {});
@@ -101,28 +110,25 @@ class PassingSearch {
   /// the mean.
   void join(std::size_t k, std::vector<MatXc>& out) {
     const auto n = static_cast<Index>(shapes_.size());
-    MatXc shapes(linear_.system().size(), n);
+    const std::vector<Index>& nodes = nodes_[k];
+    MatXc shapes(6 * static_cast<Index>(nodes.size()), n);
     for (Index i = 0; i < n; ++i)
-      shapes.col(i) = shapes_[at(i)].x;
+      for (std::size_t own = 0; own < nodes.size(); ++own)
+        shapes.col(i).segment<6>(6 * static_cast<Index>(own)) =
+            shapes_[at(i)].x.segment<6>(6 * nodes[own]);
     out.assign(static_cast<std::size_t>(options_.multiples), MatXc::Zero(n, n));
-    VecXc y;
     for (int sample = 0; sample < samples_of_a_pass; ++sample) {
       const double theta = two_pi * sample / samples_of_a_pass;
-      take_stiffness(k, (speed_ < 0 ? -theta : theta) / parts_[k].rate);
-      MatXc at_hand(n, n);
-      for (Index j = 0; j < n; ++j) {
-        const VecXc other = shapes.col(j).conjugate();
-        la::multiply(own_, other, y);
-        at_hand.col(j) = shapes.adjoint() * y;
-      }
+      const MatX K = stiffness_of(k, (speed_ < 0 ? -theta : theta) / parts_[k].rate);
+      const MatXc at_hand = shapes.adjoint() * (K * shapes.conjugate());
       for (int h = 1; h <= options_.multiples; ++h)
         out[static_cast<std::size_t>(h - 1)] +=
             2.0 / samples_of_a_pass * std::polar(1.0, -h * theta) * at_hand;
     }
   }
 
-  /// Of the parts with the reference turned by an angle, rad, into own_.
-  void take_stiffness(std::size_t k, double turned) {
+  /// Of the parts with the reference turned by an angle, rad, on their nodes.
+  MatX stiffness_of(std::size_t k, double turned) {
     const system::System& system = linear_.system();
     const SteadySystem& running = linear_.running();
     const system::State& e = linear_.equilibrium().state;
@@ -133,12 +139,17 @@ class PassingSearch {
     workspace_.context.averaged = false;
     if (!system.tangent(workspace_, e.frames, e.t, q, e.v, e.a, matrices_, &parts_[k].terms))
       throw run_error("E76", "the equilibrium lies outside the range of what passes", "");
-    own_.set_zero();
+    const std::vector<Index>& nodes = nodes_[k];
+    const auto place = [&](Index node) {
+      return 6 * (std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+    };
+    MatX K = MatX::Zero(6 * static_cast<Index>(nodes.size()), 6 * static_cast<Index>(nodes.size()));
     for (const auto& between : parts_[k].nodes)
       for (const Index i : between)
         for (const Index j : between)
-          if (const Index slot = i < 0 || j < 0 ? -1 : own_.pattern().slot(i, j); slot >= 0)
-            own_.block(slot) = matrices_.K.block(slot);
+          if (const Index slot = i < 0 || j < 0 ? -1 : matrices_.K.pattern().slot(i, j); slot >= 0)
+            K.block<6, 6>(place(i), place(j)) = matrices_.K.block(slot);
+    return K;
   }
 
   Linearizer& linear_;
@@ -147,7 +158,7 @@ class PassingSearch {
   WhirlSolver solver_;
   system::Workspace workspace_;
   la::MCK matrices_;
-  la::BlockMatrix<6> own_;  ///< stiffness of the parts alone
+  std::vector<std::vector<Index>> nodes_;  ///< of the parts, ascending
   double speed_ = nan;
   std::vector<Shape> shapes_;
   std::vector<std::vector<MatXc>> joined_;  ///< of the parts, the multiples
@@ -197,8 +208,12 @@ std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
   const auto look = [&](double Omega, const Pair& p) {
     if (Omega == 0.0 || !search.has(Omega, p)) return;
     const double growth = search.growth(Omega, p, search.detuning(Omega, p));
-    if (!(growth > 0.0)) return;
     const std::vector<Shape>& s = search.shapes_at(Omega);
+    // less is rounding of a motion without damping, or what grows without anything that passes
+    constexpr double least = 1e-6, more = 1.01;
+    const double alone = std::max(s[p.i].growth, s[p.j].growth);
+    if (!(growth > least * (s[p.i].frequency + s[p.j].frequency)) || !(growth > more * alone))
+      return;
     keep(out, {p.parts, Omega, growth, s[p.i].frequency, s[p.j].frequency, p.multiple});
   };
   const auto for_each_pair = [&](std::size_t motions, const auto& f) {
@@ -224,8 +239,7 @@ std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
   std::vector<Between> met;
   for (std::size_t n = 0; n < speeds.size(); ++n)
     for_each_pair(known[n].size(), [&](const Pair& p) {
-      constexpr double near =
-          0.05;  // of the sum: farther off only what would be no small change grows
+      constexpr double near = 0.05;  // of the sum; farther off only no small change makes grow
       if (std::abs(off(n, p)) < near * (known[n][p.i] + known[n][p.j])) look(speeds[n], p);
       const bool behind = n + 1 < speeds.size() && known[n + 1].size() > std::max(p.i, p.j);
       if (!behind || (off(n, p) < 0) == (off(n + 1, p) < 0)) return;
