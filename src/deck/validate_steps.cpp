@@ -70,6 +70,13 @@ const double* time_constant_of(const model::BearingLaw& law) {
       law);
 }
 
+/// The shaft of a place may turn in a step.
+bool turns_in(const model::Model& m, const model::Step& step, const model::Location& at) {
+  const auto range = speeds_of(m, step, at.shaft);
+  const bool stands = range && range->first == 0 && range->second == 0;
+  return m.shafts[at.shaft].rotating && !stands;
+}
+
 /// Torsion takes part in a step of small motions.
 bool twists(const model::StepLaw& law) {
   return std::visit(
@@ -107,9 +114,7 @@ void check_linear(const model::Model& m, Problems& out) {
       if (coupling && model::is_unequal(*coupling, unequal) && m.shafts[b.at.shaft].rotating)
         say(fmt::format("the stiffness of coupling '{}' turns with its shafts", b.name),
             "leave linear out of the step");
-      const auto range = speeds_of(m, s, b.at.shaft);
-      const bool stands = range && range->first == 0 && range->second == 0;
-      const bool passes = m.shafts[b.at.shaft].rotating && !stands;
+      const bool passes = turns_in(m, s, b.at) || (b.to && turns_in(m, s, *b.to));
       const model::SupportTraits law = model::traits_of(b.law);
       if (law.passing->has_value() && passes)
         say(fmt::format("the stiffness of {} '{}' changes as its {} pass",

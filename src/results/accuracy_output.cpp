@@ -176,13 +176,14 @@ std::vector<analysis::WhirlMode> slow_modes(analysis::Linearizer& linear, double
   return analysis::whirl_modes(linear, speed, options);
 }
 
-/// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
-/// lowest in any case, and what grows. near: the equilibrium is sought from there; null: from the
-/// reference configuration.
 struct ContainedModes {
   std::vector<Contained> modes;
   std::vector<std::string> left_out;  ///< shafts whose elements are not judged
 };
+
+/// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
+/// lowest in any case, and what grows. near: the equilibrium is sought from there; null: from the
+/// reference configuration.
 ContainedModes modes_that_matter(const TransientEnd& end, double speed, double largest_spin,
                                  const system::State* near) {
   const run::Job& job = end.job;

@@ -123,6 +123,7 @@ void warn_of_changing_loads(run::Job& job, const model::Step& step, const model:
         what = fmt::format("moves the natural frequency at {:.4g} Hz by {:.2g} % (to first order)",
                            to_hz(worst.frequency), 100.0 * worst.shift);
     } catch (const Error& e) {
+      if (e.diagnostics().front().code == "E75") continue;  // it moves what nothing holds
       what = "leaves the rotor no equilibrium: " + e.diagnostics().front().message;
     }
     if (what.empty()) continue;

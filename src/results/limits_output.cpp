@@ -233,7 +233,7 @@ void LimitsOutput::find_rest(const TransientSetup& s) {
 /// Coefficients of small motions, and a motion that is not small against the film.
 void LimitsOutput::judge_share(TransientEnd& end, const Gap& x, double at_rest) {
   if (!x.film || !(x.size > at_rest)) return;
-  const double share = (x.largest.value - at_rest) / (x.size - at_rest);
+  const double share = std::max(0.0, (x.largest.value - at_rest) / (x.size - at_rest));
   end.summary["gaps"][x.name]["share of the film that the motion takes"] = share;
   if (share <= small_in_film || !std::isnan(x.begin)) return;  // beyond: judge_gap
   Diagnostic d;

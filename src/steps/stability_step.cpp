@@ -282,8 +282,9 @@ std::string with_passing_parts(results::FrequencyStep& s, const std::string& lin
   const analysis::PassingOptions options;
   std::vector<analysis::PassingGrowth> found;
   io::Value& v = s.summary()["growth by what passes"];
+  analysis::Linearizer linear(s.linear);
   try {
-    found = analysis::find_passing_growth(s.linear, parts, speeds, options);
+    found = analysis::find_passing_growth(linear, parts, speeds, options);
   } catch (const Error& e) {
     v = "not known: " + e.diagnostics().front().message;
     return of_the_mean + "; growth by what passes in them is not excluded";

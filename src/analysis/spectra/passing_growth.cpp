@@ -164,11 +164,16 @@ class PassingSearch {
   std::vector<std::vector<MatXc>> joined_;  ///< of the parts, the multiples
 };
 
-/// Where the multiple meets the sum of the frequencies, between two speeds at which it is on either side.
-double meeting(PassingSearch& search, const Pair& p, double low, double high) {
+/// Less than this of the sum of the frequencies is rounding of a motion without damping.
+constexpr double undamped_share = 1e-6;
+
+/// Where the multiple meets the sum of the frequencies, to within what changes the growth by little, between
+/// two speeds at which it is on either side by `below` and `above`, rad/s. strength: what passes adds to the
+/// growth, 1/s.
+double meeting(PassingSearch& search, const Pair& p, double low, double high, double below,
+               double above, double strength) {
   constexpr int rounds = 6;
-  double below = search.detuning(low, p), above = search.detuning(high, p);
-  const double close = 1e-6 * std::abs(above - below);
+  const double close = 0.05 * strength;  // a growth sqrt(strength^2 - detuning^2/4)
   double speed = low;
   for (int k = 0; k < rounds; ++k) {
     speed = low - below * (high - low) / (above - below);
@@ -209,10 +214,10 @@ std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
     if (Omega == 0.0 || !search.has(Omega, p)) return;
     const double growth = search.growth(Omega, p, search.detuning(Omega, p));
     const std::vector<Shape>& s = search.shapes_at(Omega);
-    // less is rounding of a motion without damping, or what grows without anything that passes
-    constexpr double least = 1e-6, more = 1.01;
+    constexpr double more = 1.01;  // what grows without anything that passes is none of it
     const double alone = std::max(s[p.i].growth, s[p.j].growth);
-    if (!(growth > least * (s[p.i].frequency + s[p.j].frequency)) || !(growth > more * alone))
+    if (!(growth > undamped_share * (s[p.i].frequency + s[p.j].frequency)) ||
+        !(growth > more * alone))
       return;
     keep(out, {p.parts, Omega, growth, s[p.i].frequency, s[p.j].frequency, p.multiple});
   };
@@ -224,32 +229,37 @@ std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
             f(Pair{k, h, i, j});
   };
   std::vector<std::vector<double>> known;  // frequencies at the speeds
-  for (const double Omega : speeds) {
-    known.emplace_back();
-    for (const Shape& s : search.shapes_at(Omega))
-      known.back().push_back(s.frequency);
-  }
   const auto off = [&](std::size_t n, const Pair& p) {
     return p.multiple * parts[p.parts].rate * std::abs(speeds[n]) - known[n][p.i] - known[n][p.j];
   };
   struct Between {
-    std::size_t n;
+    std::size_t n;  ///< the speed behind
     Pair pair;
+    double strength;
   };
   std::vector<Between> met;
-  for (std::size_t n = 0; n < speeds.size(); ++n)
-    for_each_pair(known[n].size(), [&](const Pair& p) {
+  for (std::size_t n = 0; n < speeds.size(); ++n) {
+    const std::vector<Shape>& s = search.shapes_at(speeds[n]);
+    known.emplace_back();
+    for (const Shape& x : s)
+      known.back().push_back(x.frequency);
+    for_each_pair(s.size(), [&](const Pair& p) {
+      const double sum = known[n][p.i] + known[n][p.j];
       constexpr double near = 0.05;  // of the sum; farther off only no small change makes grow
-      if (std::abs(off(n, p)) < near * (known[n][p.i] + known[n][p.j])) look(speeds[n], p);
-      const bool behind = n + 1 < speeds.size() && known[n + 1].size() > std::max(p.i, p.j);
-      if (!behind || (off(n, p) < 0) == (off(n + 1, p) < 0)) return;
-      const std::vector<Shape>& s = search.shapes_at(speeds[n]);
+      if (std::abs(off(n, p)) < near * sum) look(speeds[n], p);
+      const bool before = n > 0 && known[n - 1].size() > std::max(p.i, p.j);
+      if (!before || (off(n, p) < 0) == (off(n - 1, p) < 0)) return;
       const double decay = 0.5 * (s[p.i].growth + s[p.j].growth);
-      // half of the growth that damping takes is not there: what changes between the speeds makes it no more
-      if (search.growth(speeds[n], p, 0.0) > 0.5 * decay) met.push_back({n, p});
+      const double strength = search.growth(speeds[n], p, 0.0) - decay;
+      // half of what damping takes is not there: what changes between the speeds makes it no more
+      constexpr double half = 0.5;
+      if (strength > half * std::max(-decay, undamped_share * sum)) met.push_back({n, p, strength});
     });
+  }
   for (const Between& b : met)
-    look(meeting(search, b.pair, speeds[b.n], speeds[b.n + 1]), b.pair);
+    look(meeting(search, b.pair, speeds[b.n - 1], speeds[b.n], off(b.n - 1, b.pair),
+                 off(b.n, b.pair), b.strength),
+         b.pair);
   std::sort(out.begin(), out.end(),
             [](const PassingGrowth& a, const PassingGrowth& b) { return a.growth > b.growth; });
   return out;

@@ -37,7 +37,7 @@ struct PassingGrowth {
 };
 
 struct PassingOptions {
-  Index modes = 24;   ///< slowest motions
+  Index modes = 12;   ///< slowest motions
   int multiples = 4;  ///< of the rate
 };
 
