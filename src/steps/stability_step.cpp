@@ -276,7 +276,7 @@ std::string text_of(const analysis::PassingGrowth& g, const analysis::PassingPar
 /// make grow as they pass, to first order; W14 where something does.
 std::string with_passing_parts(results::FrequencyStep& s, const std::string& line,
                                const std::vector<analysis::PassingParts>& parts,
-                               const std::vector<double>& speeds) {
+                               const analysis::Campbell& diagram) {
   const std::string of_the_mean =
       fmt::format("{}, of the mean stiffness of {}", line, results::names_of(parts));
   const analysis::PassingOptions options;
@@ -284,7 +284,7 @@ std::string with_passing_parts(results::FrequencyStep& s, const std::string& lin
   io::Value& v = s.summary()["growth by what passes"];
   analysis::Linearizer linear(s.linear);
   try {
-    found = analysis::find_passing_growth(linear, parts, speeds, options);
+    found = analysis::find_passing_growth(linear, parts, diagram, options);
   } catch (const Error& e) {
     v = "not known: " + e.diagnostics().front().message;
     return of_the_mean + "; growth by what passes in them is not excluded";
@@ -328,13 +328,14 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   o.modes = law.modes;
   o.all = true;
   o.threads = job.options.jobs;
+  const std::vector<analysis::PassingParts> passing = results::passing_parts(job);
+  o.shapes = !passing.empty();
   const run::PhaseTimer timer(job, "stability");
   const analysis::StabilityResult r = analysis::find_instability(s.linear, o);
 
   io::Value& v = s.summary();
   const bool unknown = r.stable_at_start && !r.verdicts.front().certificate.stability_certain();
   v["stable at the first speed"] = unknown ? io::Value() : io::Value(r.stable_at_start);
-  const std::vector<analysis::PassingParts> passing = results::passing_parts(job);
   v["certified"] = r.certain() && !results::turns_with_inertia(job.model) && passing.empty();
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
@@ -349,7 +350,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   std::string line = verdict_line(r);
   if (results::turns_with_inertia(job.model))
     line += "; of the mean inertia over a revolution: growth in bands of speed is not excluded";
-  if (!passing.empty()) line = with_passing_parts(s, line, passing, speeds);
+  if (!passing.empty()) line = with_passing_parts(s, line, passing, r.diagram);
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + "." + neutral_text(r);
   const std::string moments = results::moments_along_shafts(job.model);

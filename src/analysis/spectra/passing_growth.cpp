@@ -33,15 +33,17 @@ struct Pair {
 
 class PassingSearch {
  public:
-  PassingSearch(Linearizer& linear, const std::vector<PassingParts>& parts,
+  PassingSearch(Linearizer& linear, const std::vector<PassingParts>& parts, const Campbell& diagram,
                 const PassingOptions& options)
       : linear_(linear),
         parts_(parts),
+        diagram_(diagram),
         options_(options),
         solver_(linear, modes_of(options)),
         workspace_(linear.system().make_workspace()),
         matrices_(linear.system().make_matrices()) {
     for (const PassingParts& p : parts) {
+      blocks_.push_back(linear.system().blocks_of(p.terms));
       std::vector<Index>& own = nodes_.emplace_back();
       for (const auto& between : p.nodes)
         std::copy_if(between.begin(), between.end(), std::back_inserter(own),
@@ -54,19 +56,16 @@ class PassingSearch {
   const std::vector<Shape>& shapes_at(double Omega) {
     if (speed_ == Omega) return shapes_;
     speed_ = Omega;
-    shapes_.clear();
     joined_.assign(parts_.size(), {});
-    const std::vector<WhirlMode> modes = solver_.solve(Omega);
+    shapes_ = drawn_at(Omega);
+    if (shapes_.size() < at(options_.modes)) shapes_ = found_at(Omega);
     const la::MCK& m = linear_.at(Omega);
     VecXc y;
-    for (const WhirlMode& mode : modes) {
-      if (!mode.oscillates() || shapes_.size() == at(options_.modes)) continue;
-      Shape s{mode.frequency, mode.lambda.real(), mode.x, {}};
+    for (Shape& s : shapes_) {
       la::multiply(m.M, s.x, y);
-      s.slope = 2.0 * mode.lambda * s.x.dot(y);
+      s.slope = 2.0 * Complex(s.growth, s.frequency) * s.x.dot(y);
       la::multiply(m.C, s.x, y);
       s.slope += s.x.dot(y);
-      shapes_.push_back(std::move(s));
     }
     return shapes_;
   }
@@ -87,6 +86,12 @@ class PassingSearch {
     return 0.5 * (own + other).real() + std::abs(root.real());
   }
 
+  /// What passes adds to the growth where neither decays, 1/s.
+  double strength(double Omega, const Pair& p) {
+    shapes_at(Omega);
+    return std::sqrt(std::abs(coupling(p, p.i, p.j) * coupling(p, p.j, p.i)));
+  }
+
   bool has(double Omega, const Pair& p) { return shapes_at(Omega).size() > std::max(p.i, p.j); }
 
  private:
@@ -97,6 +102,29 @@ class PassingSearch {
     return o;
   }
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  /// The slowest that oscillate, without their slopes.
+  std::vector<Shape> found_at(double Omega) {
+    std::vector<Shape> out;
+    for (const WhirlMode& mode : solver_.solve(Omega))
+      if (mode.oscillates() && out.size() < at(options_.modes))
+        out.push_back({mode.frequency, mode.lambda.real(), mode.x, {}});
+    return out;
+  }
+  std::vector<Shape> drawn_at(double Omega) {
+    std::vector<Shape> out;
+    const auto& known = diagram_.speeds;
+    const auto it = std::find(known.begin(), known.end(), Omega);
+    if (it == known.end()) return out;
+    const auto k = static_cast<std::size_t>(it - known.begin());
+    for (const CampbellLine& l : diagram_.lines)
+      if (!std::isnan(l.frequency[k]))
+        out.push_back({l.frequency[k], l.lambda[k].real(), l.shape[k], {}});
+    std::sort(out.begin(), out.end(),
+              [](const Shape& a, const Shape& b) { return a.frequency < b.frequency; });
+    if (out.size() > at(options_.modes)) out.resize(at(options_.modes));
+    return out;
+  }
 
   /// c_ij.
   Complex coupling(const Pair& p, std::size_t i, std::size_t j) {
@@ -137,7 +165,8 @@ class PassingSearch {
       if (running.spinning()[at(i)])
         q[6 * i + system::spin_phi] += running.ratio(system.node(i).line) * turned;
     workspace_.context.averaged = false;
-    if (!system.tangent(workspace_, e.frames, e.t, q, e.v, e.a, matrices_, &parts_[k].terms))
+    if (!system.tangent_blocks(workspace_, e.frames, e.t, q, e.v, e.a, matrices_, parts_[k].terms,
+                               blocks_[k]))
       throw run_error("E76", "the equilibrium lies outside the range of what passes", "");
     const std::vector<Index>& nodes = nodes_[k];
     const auto place = [&](Index node) {
@@ -154,11 +183,13 @@ class PassingSearch {
 
   Linearizer& linear_;
   const std::vector<PassingParts>& parts_;
+  const Campbell& diagram_;
   PassingOptions options_;
   WhirlSolver solver_;
   system::Workspace workspace_;
   la::MCK matrices_;
-  std::vector<std::vector<Index>> nodes_;  ///< of the parts, ascending
+  std::vector<std::vector<Index>> nodes_;       ///< of the parts, ascending
+  std::vector<system::System::Blocks> blocks_;  ///< of their terms
   double speed_ = nan;
   std::vector<Shape> shapes_;
   std::vector<std::vector<MatXc>> joined_;  ///< of the parts, the multiples
@@ -179,7 +210,7 @@ double meeting(PassingSearch& search, const Pair& p, double low, double high, do
     speed = low - below * (high - low) / (above - below);
     if (!search.has(speed, p)) break;
     const double here = search.detuning(speed, p);
-    if (std::abs(here) < close) break;
+    if (std::abs(here) < close || !(search.growth(speed, p, 0.0) > 0.0)) break;
     const bool left = (here < 0) == (below < 0);
     (left ? low : high) = speed;
     (left ? below : above) = here;
@@ -205,11 +236,12 @@ void keep(std::vector<PassingGrowth>& out, const PassingGrowth& x) {
 
 std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
                                                const std::vector<PassingParts>& parts,
-                                               const std::vector<double>& speeds,
+                                               const Campbell& diagram,
                                                const PassingOptions& options) {
-  WHIRL_EXPECTS(!speeds.empty() && options.modes > 0 && options.multiples > 0);
+  WHIRL_EXPECTS(!diagram.speeds.empty() && options.modes > 0 && options.multiples > 0);
+  const std::vector<double>& speeds = diagram.speeds;
   std::vector<PassingGrowth> out;
-  PassingSearch search(linear, parts, options);
+  PassingSearch search(linear, parts, diagram, options);
   const auto look = [&](double Omega, const Pair& p) {
     if (Omega == 0.0 || !search.has(Omega, p)) return;
     const double growth = search.growth(Omega, p, search.detuning(Omega, p));
@@ -249,11 +281,15 @@ std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
       if (std::abs(off(n, p)) < near * sum) look(speeds[n], p);
       const bool before = n > 0 && known[n - 1].size() > std::max(p.i, p.j);
       if (!before || (off(n, p) < 0) == (off(n - 1, p) < 0)) return;
-      const double decay = 0.5 * (s[p.i].growth + s[p.j].growth);
-      const double strength = search.growth(speeds[n], p, 0.0) - decay;
+      // where the two meet they grow if what passes exceeds the geometric mean of their decays
+      const auto decay = [&](const Shape& x) {
+        return std::max(-x.growth, undamped_share * x.frequency);
+      };
+      const double strength = search.strength(speeds[n], p);
       // half of what damping takes is not there: what changes between the speeds makes it no more
       constexpr double half = 0.5;
-      if (strength > half * std::max(-decay, undamped_share * sum)) met.push_back({n, p, strength});
+      if (strength > half * std::sqrt(decay(s[p.i]) * decay(s[p.j])))
+        met.push_back({n, p, strength});
     });
   }
   for (const Between& b : met)

@@ -12,7 +12,7 @@
 // a motion of negative energy, are left out.
 // Source: A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, 1979, doi 10.1002/9783527617586, ch. 5.
 #pragma once
-#include <analysis/linearizer.hpp>
+#include <analysis/spectra/campbell.hpp>
 #include <array>
 #include <string>
 #include <vector>
@@ -37,17 +37,17 @@ struct PassingGrowth {
 };
 
 struct PassingOptions {
-  Index modes = 12;   ///< slowest motions
+  Index modes = 12;   ///< slowest motions; solved for where the diagram has less
   int multiples = 4;  ///< of the rate
 };
 
-/// All that grows at these speeds or, where frequencies between them go by straight lines, between them;
-/// of every two motions and multiple the largest, fastest first.
-/// @pre ascending or descending speeds of the reference, rad/s, of one sign.
+/// All that grows at the speeds of a diagram or, where frequencies between them go by straight lines,
+/// between them; of every two motions and multiple the largest, fastest first.
+/// @pre the diagram has the shapes of its motions, and speeds of the reference that ascend or descend.
 /// @throws Error as Linearizer::at.
 std::vector<PassingGrowth> find_passing_growth(Linearizer& linear,
                                                const std::vector<PassingParts>& parts,
-                                               const std::vector<double>& speeds,
+                                               const Campbell& diagram,
                                                const PassingOptions& options = {});
 
 }  // namespace whirl::analysis

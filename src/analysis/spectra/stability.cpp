@@ -220,7 +220,7 @@ StabilityResult sweep(
   StabilityResult out;
   Sweep search(linear, o);
   const std::vector<double> speeds = speeds_of(o);
-  CampbellRecorder recorder(speeds);
+  CampbellRecorder recorder(speeds, o.shapes);
   for (std::size_t k = 0; k < speeds.size(); ++k) {
     const auto& modes = search.advance(speeds[k]);
     std::vector<TrackedMode> oscillating;

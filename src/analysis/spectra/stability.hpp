@@ -26,6 +26,7 @@ struct StabilityOptions {
   double tolerance = 1e-12;  ///< relative, of the speed
   bool all = false;          ///< go on after the first crossing; else stop there
   int threads = 1;           ///< 0: all processors; the results are the same for any number
+  bool shapes = false;       ///< the diagram has the shapes of its motions
 };
 
 struct Onset {
