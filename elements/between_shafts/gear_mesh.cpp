@@ -187,13 +187,12 @@ GearMesh make_gear_mesh(const GearGeometry& g, double k0, double c,
   const double r1 = g.pitch_radius, r2 = r1 * g.z2 / g.z1;
   const Vec3 centre(0, std::cos(g.centre_angle), std::sin(g.centre_angle)),
       around(0, -centre.z(), centre.y());
-  // An internal gear lies outside: its flanks push the pinion inwards.
-  const double out = g.z2 > 0 ? 1.0 : -1.0;
-  const Vec3 normal = cb * (side * ca * around + out * sa * centre) + side * sb * Vec3::UnitX();
+  // teeth become thinner outwards: whatever they mesh with pushes the gear back to its own centre
+  const Vec3 normal = cb * (side * ca * around + sa * centre) - side * sb * Vec3::UnitX();
   m.b.segment<3>(0) = normal;
   m.b.segment<3>(7) = -normal;
-  m.b.segment<3>(3) = -side * sb * r1 * centre;
-  m.b.segment<3>(10) = -side * sb * r2 * centre;
+  m.b.segment<3>(3) = side * sb * r1 * centre;
+  m.b.segment<3>(10) = side * sb * r2 * centre;
   m.rotation = side * cb * r1 * ca / g.z1;
   m.b[6] = m.rotation * g.z1;
   m.b[13] = m.rotation * g.z2;

@@ -3,19 +3,20 @@
 // Gear 1 at node 0, gear 2 at node 1, axes parallel to x; c = (cos a, sin a) in (y, z): from centre
 // 1 towards centre 2 (towards the mesh for an internal pair), J a quarter turn y -> z. n: unit
 // normal of the tooth flanks on which a positive torque of gear 1 drives,
-//   n = cos beta (cos alpha J c + sin alpha c) + sin beta x
+//   n = cos beta (cos alpha J c + sin alpha c) - sin beta x
 //       (transverse pressure angle alpha, base helix angle beta, right-hand on
-//   gear 1 positive)
+//   gear 1 positive: its teeth run along cos beta x + sin beta J c, and a driver of right-hand teeth
+//   that turns positively is pushed along +x)
 // Compression of the mesh along n at the pitch points (r_i: pitch radii, r_2 < 0 for an internal
 // gear):
-//   delta = n.(u_0 - u_1) + cos beta (r_b1 phi_1 + r_b2 phi_2) - sin beta c.(r_1 t_0 + r_2 t_1) +
+//   delta = n.(u_0 - u_1) + cos beta (r_b1 phi_1 + r_b2 phi_2) + sin beta c.(r_1 t_0 + r_2 t_1) +
 //       e(theta)
 // (r_b = r cos alpha; t = d - x: a tilt moves the pitch point along x). phi enters with its whole
 // turns through the teeth passed, z_1 phi_1 + z_2 phi_2, which is exact for any number of turns. e:
 // static transmission error, theta = z_1 phi_1 the mesh phase.
 //
 // Drive flank: N = k(theta) delta, both signs when there is no backlash; with backlash j (along n,
-// m) only delta > 0, and the back flank, of normal n' = cos beta (-cos alpha J c + sin alpha c) -
+// m) only delta > 0, and the back flank, of normal n' = cos beta (-cos alpha J c + sin alpha c) +
 // sin beta x, carries delta' = its compression - j > 0.
 //   k(theta) = k_0 [1 + sum_m a_m cos(m theta + b_m)],   e(theta) = sum_m e_m cos(m theta + f_m)
 //       (m = 1 ... harmonics)

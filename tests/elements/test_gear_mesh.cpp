@@ -93,12 +93,28 @@ TEST(GearMesh, ForcesOfATransmittedTorque) {
     EXPECT_NEAR(on1.dot(around), -T / 0.5, 1e-9 * T);
     EXPECT_NEAR(on1.dot(c), -T / 0.5 * std::tan(20 * pi / 180), 1e-9 * T);  // pushed apart
     EXPECT_NEAR(on2.dot(c), T / 0.5 * std::tan(20 * pi / 180), 1e-9 * T);
-    EXPECT_NEAR(on1.x(), -T / 0.5 * std::tan(helix) / std::cos(20 * pi / 180), 1e-9 * T);
+    // a driver of right-hand teeth, fingers of the right hand along its turning: thrust along the thumb
+    EXPECT_NEAR(on1.x(), T / 0.5 * std::tan(helix) / std::cos(20 * pi / 180), 1e-9 * T);
     // the axial force at the pitch point tilts gear 1: moment about its axis direction c x e ... =
     // r (c x F)
     const Vec3 moment = Vec3::UnitX().cross(f.segment<3>(3));  // d x f_d at no tilt
     EXPECT_LT((moment - Vec3((0.5 * c).cross(Vec3(-on1.x(), 0, 0)))).norm(), 1e-9 * T);
   }
+}
+
+// As any gear does, the ring presses the pinion away from the mesh, back to its centre.
+TEST(GearMesh, AnInternalGearPressesItsPinionInwards) {
+  const auto g = pair(20, -60);
+  const auto m = make_gear_mesh(g, 1e6, 0);
+  Vector<12> q = Vector<12>::Zero();
+  q[3] = 1e-4;
+  system::ForceX<14> f = Vector<14>::Zero();
+  const auto x = at(q);
+  m.add_force(x.nodes(), {}, f);
+  const double T = f[6], radial = T / 0.5 * std::tan(20 * pi / 180);
+  const Vec3 to_mesh(0, std::cos(g.centre_angle), std::sin(g.centre_angle));
+  EXPECT_NEAR(-f.segment<3>(0).dot(to_mesh), -radial, 1e-9 * T);
+  EXPECT_NEAR(-f.segment<3>(7).dot(to_mesh), radial, 1e-9 * T);
 }
 
 TEST(GearMesh, VaryingStiffnessDoesNoNetWork) {
