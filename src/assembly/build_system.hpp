@@ -88,6 +88,8 @@ struct FilmBearing {
   std::size_t kept = 0, kept_each = 0;  ///< how much in all, and for each pad
   /// Empty where the journal is outside a film.
   std::function<std::vector<elements::FilmStanding>(const NodeAt&)> standing;
+  /// Of the films on another grid, at the same place; those without heat as assembled.
+  std::function<std::vector<elements::FilmStanding>(const NodeAt&, const FilmGrid&)> standing_on;
   /// @pre the journal is inside all films (also heat).
   std::function<std::vector<elements::FilmField>(const NodeAt&)> fields;
   /// The balance that the state would have, which is that in the state where it is in equilibrium.

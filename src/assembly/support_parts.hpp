@@ -133,9 +133,12 @@ void put_on_grid(elements::FiniteJournal& film, FilmGrid grid, const RecessesOf&
 /// A film bearing for results; with heat it becomes something that states keep. pads_at: its pads in
 /// a state, which live as long as the function.
 using HeatPadsAt = std::function<std::vector<elements::HeatPad>(const NodeAt&)>;
+/// Its film on another grid: one, or one a pad.
+using FilmsOn = std::function<std::vector<elements::FiniteJournal>(const FilmGrid&)>;
 /// Returns where what it keeps begins, -1 without heat.
 std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const model::FilmFlow& flow,
-                                const model::Oil& oil, std::size_t pads, const HeatPadsAt& pads_at);
+                                const model::Oil& oil, std::size_t pads, const HeatPadsAt& pads_at,
+                                const FilmsOn& films_on);
 
 /// The cells of a film that conserves mass, where the step follows its oil; false: it does not, and
 /// the film is that of the momentary state. Decks with such a step have the cells' nodes in all steps.

@@ -286,7 +286,11 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
         out.push_back({film.get(), k, p});
       return out;
     };
-    film->kept_from = add_film_bearing(a, b, law.flow, law.oil, film->surface->arcs().size(), pads);
+    const auto films_on = [law](const FilmGrid& grid) {
+      return std::vector{make_finite_journal(law, grid)};
+    };
+    film->kept_from =
+        add_film_bearing(a, b, law.flow, law.oil, film->surface->arcs().size(), pads, films_on);
     if (add_carried_film(a, b, n, *film))
       add_film_condition(a, b, n, elements::FilmLaw<elements::FiniteJournal>{*film}, law.clearance);
     else

@@ -109,14 +109,26 @@ void check_balance(const elements::HeatBalance& b, const elements::HeatSettings&
 }  // namespace
 
 std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const model::FilmFlow& flow,
-                                const model::Oil& oil, std::size_t pads,
-                                const HeatPadsAt& pads_at) {
+                                const model::Oil& oil, std::size_t pads, const HeatPadsAt& pads_at,
+                                const FilmsOn& films_on) {
   FilmBearing film;
   film.bearing = number_of(a, b);
   film.heated = flow.heat.has_value();
   film.standing = [pads_at, density = oil.density](const NodeAt& at) {
     std::vector<elements::FilmStanding> out;
     const std::vector<elements::HeatPad> now = pads_at(at);
+    if (!all_inside(now)) return out;
+    for (const elements::HeatPad& p : now)
+      out.push_back(elements::film_standing(*p.film, p.pad, p.point, density));
+    return out;
+  };
+  film.standing_on = [pads_at, films_on, density = oil.density](const NodeAt& at,
+                                                                const FilmGrid& grid) {
+    std::vector<elements::FilmStanding> out;
+    const std::vector<elements::FiniteJournal> films = films_on(grid);
+    std::vector<elements::HeatPad> now = pads_at(at);
+    for (std::size_t k = 0; k < now.size(); ++k)
+      now[k].film = &films[films.size() == 1 ? 0 : k];
     if (!all_inside(now)) return out;
     for (const elements::HeatPad& p : now)
       out.push_back(elements::film_standing(*p.film, p.pad, p.point, density));

@@ -333,8 +333,15 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
               const model::TiltingPadJournal& law) {
   using Ring = PadRing<Pressed, Offsets>;
   const auto made = std::make_shared<Ring>(a, b, n, law);
-  made->keep_from(add_film_bearing(a, b, law.flow, law.oil, made->pads(),
-                                   [made](const NodeAt& at) { return made->films(at); }));
+  const auto films_on = [law](const FilmGrid& grid) {
+    std::vector<elements::FiniteJournal> films;
+    for (const elements::TiltingPad& pad : make_tilting_pads(law, grid))
+      films.push_back(pad.film);
+    return films;
+  };
+  made->keep_from(add_film_bearing(
+      a, b, law.flow, law.oil, made->pads(), [made](const NodeAt& at) { return made->films(at); },
+      films_on));
   const std::shared_ptr<const Ring> ring = made;
   const bool conserves = law.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
   const bool has_cells = conserves && law.rows == 0;

@@ -26,6 +26,10 @@ double mean(const std::vector<double>& x) {
   return sum / static_cast<double>(x.size());
 }
 
+double error_of(const std::vector<double>& of_pads, std::size_t k) {
+  return of_pads.empty() ? nan : of_pads[k];
+}
+
 void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
   const elements::FilmStanding& s = c.films->pads[k];
   double in = nan, out = nan, face = nan, face_at = nan, film = nan, pad = nan, journal = nan,
@@ -68,14 +72,20 @@ void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
          growth,
          to_pad,
          to_journal,
-         nan});
+         nan,
+         error_of(c.films->pressure_error, k),
+         error_of(c.films->flow_error, k)});
 }
 
 void add_sum_row(io::Table& t, const SupportCoefficients& c) {
   Vec2 force = Vec2::Zero();
   elements::FilmStanding sum;
   sum.thinnest = infinity;
-  for (const elements::FilmStanding& s : c.films->pads) {
+  double pressure_error = nan, flow_error = 0.0;
+  for (std::size_t k = 0; k < c.films->pads.size(); ++k) {
+    const elements::FilmStanding& s = c.films->pads[k];
+    const double of_flow = error_of(c.films->flow_error, k);
+    flow_error += s.side_flow == 0.0 ? 0.0 : of_flow * s.side_flow;
     force += s.force;
     sum.power += s.power;
     sum.side_flow += s.side_flow;
@@ -87,6 +97,7 @@ void add_sum_row(io::Table& t, const SupportCoefficients& c) {
     if (s.highest > sum.highest) {
       sum.highest = s.highest;
       sum.highest_at = s.highest_at;
+      pressure_error = error_of(c.films->pressure_error, k);
     }
   }
   double face = nan, face_at = nan, film = nan, journal = nan, to_pad = nan, to_journal = nan;
@@ -129,7 +140,9 @@ void add_sum_row(io::Table& t, const SupportCoefficients& c) {
          nan,
          to_pad,
          to_journal,
-         c.films->face_error});
+         c.films->face_error,
+         pressure_error,
+         sum.side_flow > 0.0 ? flow_error / sum.side_flow : nan});
 }
 
 /// A curve along all pads, broken between them.
@@ -241,7 +254,9 @@ plot::Figure draw_round(const std::string& name, const SupportCoefficients& c) {
 io::Table film_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Films at the equilibrium";
-  t.nan_means = "of the whole bearing there is no such number, or its film has no heat balance";
+  t.nan_means =
+      "of the whole bearing there is no such number, its film has no heat balance, or it is solved "
+      "along the axis";
   t.columns = {{"bearing", "-", ""},
                {"speed", "rpm", ""},
                {"pad", "-", "0: all of the bearing"},
@@ -267,7 +282,9 @@ io::Table film_table(std::span<const SupportCoefficients> list) {
                {"growth of clearance", "m", "as assembled, by the temperatures"},
                {"heat into pad", "W", ""},
                {"heat into journal", "W", "from this film; in sum none"},
-               {"error of hottest face", "K", "by the grid of the heat balance, any pad"}};
+               {"error of hottest face", "K", "by the grid of the heat balance, any pad"},
+               {"axial error of pressure", "-", "of the largest; a film solved along the axis too"},
+               {"axial error of side flow", "-", "likewise"}};
   for (const SupportCoefficients& c : list) {
     if (!c.films) continue;
     for (std::size_t k = 0; k < c.films->pads.size(); ++k)

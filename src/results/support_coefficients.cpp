@@ -268,6 +268,21 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
   }
 }
 
+/// What one profile along the axis leaves of the pressure and side flow of each pad.
+void add_axial_errors(FilmResults& f, const assembly::FilmBearing& film,
+                      const assembly::NodeAt& node) {
+  const std::vector<elements::FilmStanding> one = film.standing_on(node, of_one_profile);
+  const std::vector<elements::FilmStanding> solved = film.standing_on(node, of_grid);
+  if (one.size() != f.pads.size() || solved.size() != f.pads.size()) return;
+  const auto error = [](double own, double other) {
+    return other != 0.0 ? std::abs(own - other) / std::abs(other) : nan;
+  };
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    f.pressure_error.push_back(error(one[k].highest, solved[k].highest));
+    f.flow_error.push_back(error(one[k].side_flow, solved[k].side_flow));
+  }
+}
+
 /// The films of a bearing in an evaluated state.
 void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                     const system::Workspace& w) {
@@ -301,11 +316,13 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
     if (const auto* journal = std::get_if<model::FiniteJournal>(&law)) {
       f.clearances.assign(f.pads.size(), journal->clearance);
       flow(*journal);
+      if (journal->rows == 0) add_axial_errors(f, film, node);
     }
     if (const auto* tilting = std::get_if<model::TiltingPadJournal>(&law)) {
       for (const auto& pad : tilting->pads())
         f.clearances.push_back(pad.clearance);
       flow(*tilting);
+      if (tilting->rows == 0) add_axial_errors(f, film, node);
     }
     c.films = std::move(f);
   }

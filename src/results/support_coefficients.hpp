@@ -36,6 +36,10 @@ struct FilmResults {
   std::optional<elements::HeatBalance> heat;
   double face_error =
       nan;  ///< K: by how much the hottest faces differ on a finer grid of the balance
+  /// Of films with one profile along the axis, one a pad: by how much the largest pressure and the side
+  /// flow differ from those of a film that is solved along the axis too, as isoviscous films at the same
+  /// place; of the pad's own. Empty: no such profile.
+  std::vector<double> pressure_error, flow_error;
   double effective_temperature = nan;  ///< of the oil with the mean viscosity, K; NaN: no heat
   std::vector<double> clearances;      ///< as assembled, one a pad, m
   double viscosity = 0;                ///< mean, Pa s

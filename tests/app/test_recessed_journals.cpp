@@ -45,8 +45,22 @@ struct Film {
   Vec2 place = Vec2::Zero();
   Mat2 K = Mat2::Zero(), C = Mat2::Zero();
   double grid = 0, axial = 0;
+  /// Of all its pads, with what the profile along the axis leaves of them.
+  double pressure = 0, pressure_error = 0, flow = 0, flow_error = 0;
   std::string log;
 };
+
+/// What one profile along the axis leaves of pressure and flow is the difference to the grid's, to a part
+/// for the place, which is another under the same load.
+void expect_film_errors(const Film& profile, const Film& grid) {
+  const double p = std::abs(profile.pressure - grid.pressure) / grid.pressure;
+  const double q = std::abs(profile.flow - grid.flow) / grid.flow;
+  EXPECT_GT(profile.pressure_error, 2e-3);
+  EXPECT_NEAR(p, profile.pressure_error, 0.3 * profile.pressure_error + 2e-3);
+  EXPECT_GT(profile.flow_error, 1e-3);
+  EXPECT_NEAR(q, profile.flow_error, 0.3 * profile.flow_error + 2e-3);
+  EXPECT_TRUE(std::isnan(grid.pressure_error) && std::isnan(grid.flow_error));
+}
 
 /// What its static step says of a bearing.
 Film film_of(const std::string& bearing, const char* speed = "3000 rpm") {
@@ -64,6 +78,15 @@ Film film_of(const std::string& bearing, const char* speed = "3000 rpm") {
   f.C << of("cyy [N s/m]"), of("cyz [N s/m]"), of("czy [N s/m]"), of("czz [N s/m]");
   f.grid = of("grid error [-]");
   f.axial = of("axial error [-]");
+  const Columns films = d.csv("films_films.csv");
+  for (const auto& row : films.rows) {
+    if (row.at(films.column("pad [-]")) != 0) continue;
+    f.pressure = row.at(films.column("largest pressure [Pa]"));
+    f.pressure_error = row.at(films.column("axial error of pressure [-]"));
+    f.flow = row.at(films.column("side flow [m^3/s]"));
+    f.flow_error = row.at(films.column("axial error of side flow [-]"));
+    break;
+  }
   return f;
 }
 
@@ -104,6 +127,7 @@ TEST(RecessedJournals, TheAxialErrorIsWhatTheGridFinds) {
     EXPECT_LT(profile.axial, 2e-2);
     EXPECT_LT(profile.grid, 1e-4);
     EXPECT_TRUE(std::isnan(grid.axial));
+    expect_film_errors(profile, grid);
     EXPECT_LT(grid.grid, 5e-3);
     // at the same load rather than at the same place
     EXPECT_LT(apart(profile, grid), 3 * profile.axial + grid.grid);
@@ -116,6 +140,7 @@ TEST(RecessedJournals, TheAxialErrorIsWhatTheGridFinds) {
   EXPECT_GT(profile.axial, 1e-3);
   EXPECT_LT(apart(profile, grid), 3 * profile.axial + grid.grid);
   EXPECT_TRUE(std::isnan(grid.axial));
+  expect_film_errors(profile, grid);
 }
 
 TEST(RecessedJournals, GridAndRowsAreThoseOfTheDeck) {

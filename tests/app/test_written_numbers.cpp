@@ -577,6 +577,8 @@ const Elsewhere elsewhere[] = {
     {"films", "effective viscosity [Pa s]", "app/test_hot_films.cpp"},
     {"films", "effective temperature [degC]", "app/test_hot_films.cpp"},
     {"films", "error of hottest face [K]", "app/test_hot_films.cpp"},
+    {"films", "axial error of pressure [-]", "app/test_recessed_journals.cpp"},
+    {"films", "axial error of side flow [-]", "app/test_recessed_journals.cpp"},
     {"films", "oil in [degC]", "app/test_hot_films.cpp"},
     {"films", "oil out [degC]", "app/test_hot_films.cpp"},
     {"films", "hottest face [degC]", "app/test_hot_films.cpp"},
