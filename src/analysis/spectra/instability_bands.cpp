@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 namespace whirl::analysis {
@@ -70,6 +71,25 @@ class BandSearch {
       return at(Omega);
     settle(Omega, *x);
     return growth_of(*x);
+  }
+
+  /// Whether the fastest motion at one speed is that at another, and grows on the way, as far as a few looks
+  /// can tell.
+  bool is_one_motion(const Visited& a, const Visited& b) {
+    if (!a.growth.mode || !b.growth.mode) return false;
+    constexpr int steps = 4;
+    la::Mode x = *a.growth.mode;
+    for (int k = 1; k <= steps; ++k) {
+      const double Omega = k < steps ? a.speed + (b.speed - a.speed) * k / steps : b.speed;
+      ++evaluations;
+      auto next = solver_.follow(axes_.at(sense_ * Omega, Complex(0, infinity)), x);
+      if (!next || !is_motion(*next)) return false;
+      x = std::move(*next);
+      settle(Omega, x);
+      if (!(x.lambda.real() > noise(Omega))) return false;
+    }
+    constexpr double equal = 1e-6;
+    return std::abs(x.lambda - b.growth.mode->lambda) < equal * std::abs(axes_.speed(b.speed));
   }
 
   /// The speed between a stable and an unstable one where the growth is zero. It crosses zero
@@ -310,6 +330,27 @@ bool visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense
   return true;
 }
 
+/// Growing neighbours belong to one band where one motion grows from one to the other; between others is
+/// looked at, to a part of what lies between them.
+void separate_bands(BandSearch& search, std::vector<Visited>& samples) {
+  const auto grows = [&](const Visited& x) { return x.growth.rate > search.noise(x.speed); };
+  constexpr int halvings = 7;
+  std::vector<Visited> found;
+  const auto look = [&](const auto& self, const Visited& a, const Visited& b, int left) -> void {
+    if (left == 0 || !grows(a) || !grows(b) || search.is_one_motion(a, b)) return;
+    Visited middle = search.visit(0.5 * (a.speed + b.speed));
+    self(self, a, middle, left - 1);
+    if (grows(middle)) self(self, middle, b, left - 1);
+    found.push_back(std::move(middle));
+  };
+  for (std::size_t k = 0; k + 1 < samples.size(); ++k)
+    look(look, samples[k], samples[k + 1], halvings);
+  samples.insert(samples.end(), std::make_move_iterator(found.begin()),
+                 std::make_move_iterator(found.end()));
+  std::sort(samples.begin(), samples.end(),
+            [](const Visited& x, const Visited& y) { return x.speed < y.speed; });
+}
+
 /// Two motions that have bands of their own, at their critical speeds, have one together halfway between
 /// (a combination resonance), which may lie between the speeds looked at.
 std::vector<InstabilityBand> combined_bands(BandSearch& search,
@@ -372,6 +413,7 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     samples.push_back(search.visit(Omega));
   }
   if (!axes.constant()) out.sought_between = visit_resonances(search, axes, o.sense, samples);
+  separate_bands(search, samples);
   for (const Visited& v : samples) {
     out.speeds.push_back(v.speed);
     out.growth.push_back(v.growth.rate);
