@@ -254,11 +254,34 @@ class PadRing {
     }
     return out;
   }
-  /// The first pad that finds no balance with the journal where it is; 0: all do.
-  std::size_t tipping(const elements::LateralMotion& m) const {
-    for (std::size_t k = 0; k < pads_.size(); ++k)
-      if (!pads_[k].settled(m).allFinite()) return k + 1;
-    return 0;
+  /// How far the journal is from the middle where no pad stands against it, m; else 0.
+  double escaped(const NodeAt& at) const {
+    const Vec2 r = journal(at).r;
+    constexpr double against = 0.25;  // of the way, towards the pivot of a pad
+    for (const elements::TiltingPad& pad : pads_)
+      if (r.dot(pad.pivot) > against * r.norm()) return 0.0;
+    return r.norm();
+  }
+  /// The first pad that finds no balance with the journal where it is, or farther out on that way while it is
+  /// inside; 0: all do.
+  struct Tipping {
+    std::size_t pad = 0;
+    double eccentricity = 0;  ///< towards its pivot
+    bool there = true;        ///< where the journal is
+  };
+  Tipping tipping(const NodeAt& at) const {
+    elements::LateralMotion m = journal(at);
+    m.v.setZero();
+    const double farthest = SupportCondition::believed * law_.clearance / m.r.norm();
+    constexpr int looks = 12;
+    for (int look = 0; look <= looks; ++look) {
+      elements::LateralMotion there = m;
+      there.r *= 1.0 + (std::max(farthest, 1.0) - 1.0) * look / looks;
+      for (std::size_t k = 0; k < pads_.size(); ++k)
+        if (!pads_[k].settled(there).allFinite())
+          return {k + 1, there.r.dot(pads_[k].pivot) / given_[k].clearance, look == 0};
+    }
+    return {};
   }
   /// What the pads carry with the journal where it is, times `factor`, and every pad in balance.
   double capacity(elements::LateralMotion m, double factor) const {
@@ -372,7 +395,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   std::vector<double> offsets;
   for (const auto& p : law.pads())
     offsets.push_back(p.offset);
-  condition.state = [ring, clearance = law.clearance, offsets](const NodeAt& at) {
+  condition.state = [ring, clearance = law.clearance, offsets,
+                     supplied = law.flow.supply_pressure > 0](const NodeAt& at) {
     const std::vector<elements::PadStanding> now = ring->standing(at);
     Vec2 load = Vec2::Zero();
     for (const auto& p : now)
@@ -381,18 +405,19 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     s.film = true;
     s.gap = clearance;
     const auto reach = ring->reach(at);
-    s.displacement = std::max(0.0, reach.used);
+    s.displacement = std::max({0.0, reach.used, ring->escaped(at)});
     // at its trailing edge a pad is closer than at its pivot
     for (const auto& p : now)
       if (p.film < (1.0 - SupportCondition::believed) * s.gap)
         s.displacement = std::max(s.displacement, s.gap - p.film);
     s.load = load.norm();
     s.detail = describe_worst(now);
-    if (const std::size_t pad = ring->tipping(ring->journal(at)))
+    if (const auto tips = ring->tipping(at); tips.pad > 0)
       s.detail += fmt::format(
-          "; pad {} finds no balance there (eccentricity {:.3f} towards its pivot, which stands at "
-          "{:.3g} of its arc) and turns until it touches",
-          pad, now[pad - 1].eccentricity, offsets[pad - 1]);
+          "; pad {} finds no balance {} (eccentricity {:.3f} towards its pivot, which stands at "
+          "{:.3g} of its arc) and turns until it touches{}",
+          tips.pad, tips.there ? "there" : "farther out", tips.eccentricity, offsets[tips.pad - 1],
+          supplied ? ", which the supply pressure at its edges does to a pad without load" : "");
     constexpr double near =
         0.8;  // of the gap: what it could carry is of interest, and found slowly
     if (s.displacement > near * s.gap)

@@ -195,6 +195,23 @@ Diagnostic beyond(const SupportCondition& c, const SupportCondition::State& s,
   return d;
 }
 
+/// Of the clearance: the journal has left its bearing where no pad faces it.
+constexpr double beyond_any_film = 2.0;
+
+Error no_film(const SupportCondition& c, const SupportCondition::State& s,
+              const model::Step& step) {
+  Diagnostic d;
+  d.code = "E76";
+  d.where = c.where;
+  d.message = fmt::format(
+      "step '{}': no equilibrium found: the load drives the journal of bearing '{}' to where none "
+      "of "
+      "its pads faces it (its balance would be {:.4g} mm away, the clearance is {:.4g} mm)",
+      step.name, c.name, 1e3 * s.displacement, 1e3 * s.gap);
+  d.hint = "turn the pads by 'first_pivot', or give the bearing one that faces the load";
+  return Error(Exit::no_convergence, std::move(d));
+}
+
 }  // namespace
 
 void warn_of_closed_contacts(Job& job, const model::Step& step, const std::string& when,
@@ -205,6 +222,7 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const std::strin
   for (const SupportCondition& c : job.built.conditions) {
     const SupportCondition::State s = now.of(c);
     if (!(s.displacement > (s.film ? SupportCondition::believed * s.gap : s.gap))) continue;
+    if (s.film && s.displacement > beyond_any_film * s.gap) throw no_film(c, s, step);
     Diagnostic d = beyond(c, s, fmt::format("at {} of step '{}'", when, step.name));
     job.report.warnings.push_back(d.message);
     io::Value& list = job.summary["warnings"];

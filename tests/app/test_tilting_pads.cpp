@@ -1,6 +1,7 @@
 // Tilting-pad bearings through the program: case L4, keys, pads by themselves, messages, motion, and
 // the compressor of example 28 with its pads in full and reduced to tables.
 #include "deck_run.hpp"
+#include "film_rotor.hpp"
 
 #include <fmt/format.h>
 
@@ -333,6 +334,66 @@ inertia = "2e-3 kg.m^2"
   const double z = Pads(d).of("z [m]");
   EXPECT_LT(z, 0.0);
   EXPECT_NEAR(d.csv("t.csv").last().at("P.z [m]"), z, 1e-3 * std::abs(z)) << d.log;
+}
+
+// Beyond some tilt such a pad turns until it touches: it works in the balance that rights it, which changes
+// with the pressure by little, and the rotor is as stable as without.
+TEST(TiltingPads, SuppliedUnderPressureWorkWhereTheyRightThemselves) {
+  const auto pads = [](const char* pressure) {
+    return fmt::format(R"(type = "tilting_pad"
+pads = 5
+first_pivot = "-90 deg"
+arc = "60 deg"
+offset = 0.6
+preload = 0.2
+diameter = "100 mm"
+length = "50 mm"
+clearance = "80 um"
+viscosity = "18 mPa.s"
+supply_pressure = "{} bar"
+)",
+                       pressure);
+  };
+  const std::string steps = R"([[step]]
+name = "st"
+type = "static"
+speed = "6000 rpm"
+[[step]]
+name = "m"
+type = "modal"
+speed = "6000 rpm"
+modes = 6
+motion = "lateral"
+)";
+  double place = 0;
+  for (const char* pressure : {"0", "1.2", "2"}) {
+    const DeckRun d(whirl::test::film_rotor(pads(pressure), 6000, steps));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_FALSE(d.says("W08")) << d.log;
+    EXPECT_FALSE(d.says("diverging")) << pressure << d.log;
+    const Pads found(d);
+    const double z = found.of("z [m]");
+    if (place == 0) place = z;
+    EXPECT_NEAR(z, place, 0.06 * std::abs(place)) << pressure;
+    for (const auto& row : found.pads.rows)
+      EXPECT_GT(row.at(found.pads.column("pad load [N]")), 0.0) << pressure;
+  }
+}
+
+// The spring that lays an unloaded pad carried the rotor, 4 km away.
+TEST(TiltingPads, ALoadThatNoPadFacesIsRefused) {
+  std::string bearing = R"(type = "tilting_pad"
+diameter = "100 mm"
+length = "50 mm"
+clearance = "50 um"
+viscosity = "20 mPa.s"
+)";
+  for (const char* pivot : {"0", "90", "180"})
+    bearing += fmt::format("[[bearing.pad]]\npivot = \"{} deg\"\narc = \"60 deg\"\n", pivot);
+  const DeckRun d(whirl::test::film_rotor(
+      bearing, 250, "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n"));
+  EXPECT_EQ(d.exit, 4) << d.log;
+  EXPECT_TRUE(d.says("E76")) << d.log;
 }
 
 // Twenty speeds, from light to heavy loads, each with its equilibrium.
