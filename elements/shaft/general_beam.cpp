@@ -281,7 +281,9 @@ struct Moving {
 /// On the rates of (p1, p2) along y and z, of psi and of w.
 template <class T>
 struct BeamStresses {
-  T my[2], mz[2], twist, N, dissipated{};
+  T my[2], mz[2], twist, N;
+  T pull{};  ///< on the length of the chord alone, which N sees with what bending takes of it
+  T dissipated{};
 };
 template <class T>
 BeamStresses<T> elastic_stresses(const GeneralBeam& b, const Shape<T>& s) {
@@ -334,7 +336,8 @@ void add_damping(const GeneralBeamConstants& c, const Moving<T>& x, BeamStresses
                    c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
   const T psidot = sigma[1] - sigma[0], torque = (c.beta_twist * c.GJ_l) * psidot;
   r.twist += torque;
-  r.dissipated = torque * psidot;
+  r.pull = (c.beta_axial * c.EA_l) * ldot;
+  r.dissipated = torque * psidot + r.pull * ldot;
   for (int i = 0; i < 2; ++i) {
     r.my[i] += dy[i];
     r.mz[i] += dz[i];
@@ -363,7 +366,7 @@ ForceOut<T> force_of_stresses(const GeneralBeamConstants& c, const Moving<T>& x,
     const V3<T> on_D = k + end.angle.G * perpendicular(s.a, M[i]);
     out.m[i] = s.D[i].cross(on_D) + (spin[i] / (T(2.0) - end.n)) * (s.a + s.D[i]);
   }
-  out.f[1] = r.N * s.a + (T(1.0) / s.l) * perpendicular(s.a, fa);
+  out.f[1] = (r.N + r.pull) * s.a + (T(1.0) / s.l) * perpendicular(s.a, fa);
   out.f[0] = T(-1.0) * out.f[1];
   out.dissipated = r.dissipated;
   return out;
@@ -423,7 +426,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
                        const SectionMotion<T>& m1, const SectionMotion<T>& m2) {
   const Moving<T> x(b, n1, n2, m1, m2);
   BeamStresses<T> stresses = elastic_stresses(b, x.shape);
-  if (b.c.beta > 0.0 || b.c.beta_twist > 0.0) add_damping(b.c, x, stresses);
+  if (b.c.damped()) add_damping(b.c, x, stresses);
   ForceOut<T> out = force_of_stresses(b.c, x, stresses);
   add_triad_inertia(b, x, out);
   add_beam_inertia(b.c, x, out);
@@ -546,8 +549,7 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
                      X[3] - triad2.col(0)};
   for (int j = 0; j < 4; ++j)
     en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
-  if (c.beta > 0.0 || c.beta_twist > 0.0)
-    en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
+  if (c.damped()) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
   if (c.alpha > 0.0) en.dissipated += 2.0 * c.alpha * (en.kinetic - kinetic_before);
 }
 

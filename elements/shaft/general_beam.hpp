@@ -38,7 +38,7 @@
 // the last line leaves an error of 1/2 T^2 m^2/kGA per length on all meshes.)
 // The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma
 // a x p_i and psi' = sigma2 - sigma1, sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are
-// exactly the rates of the measures above. beta and beta_twist damp the same rates (viscous,
+// exactly the rates of the measures above. The betas damp the same rates (viscous,
 // rotating with the section).
 // Inertia: M4 (x) 1 on (r1, D1, r2, D2), with the smaller rotary inertia on the static shape
 // (timoshenko_matrices.hpp); what is left of the rotary and the polar inertia on the triads, 1/2
@@ -72,6 +72,8 @@ struct GeneralBeamConstants {
   TriadInertia triads;               ///< the rest; no products: B and C are principal axes
   double beta = 0;                   ///< stiffness-proportional damping of bending, rotating, s
   double beta_twist = 0;             ///< the same of the twist, s
+  double beta_axial = 0;             ///< and of the length of the chord, s
+  bool damped() const { return beta > 0.0 || beta_twist > 0.0 || beta_axial > 0.0; }
   double alpha = 0;  ///< mass-proportional damping, 1/s: of the velocities of the beam's own mass
 };
 

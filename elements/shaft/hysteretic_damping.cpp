@@ -12,12 +12,12 @@ using system::ForceX;
 using system::Nodes;
 using system::TangentX;
 
-GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist)
+GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, double along)
     : with(beam),
       without(beam) {
   with.c.beta = beta;
-  with.c.beta_twist = beta_twist;
-  without.c.beta = without.c.beta_twist = 0.0;
+  with.c.beta_twist = with.c.beta_axial = along;
+  without.c.beta = without.c.beta_twist = without.c.beta_axial = 0.0;
   with.c.alpha = without.c.alpha = 0.0;
 }
 

@@ -31,7 +31,8 @@ struct GeneralBeamDamping {
   GeneralBeam with, without;
   GeneralBeamDamping() = default;
   /// Damping with the coefficients given (s), of the beam without any.
-  GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist);
+  /// along: of twist and length.
+  GeneralBeamDamping(const GeneralBeam& beam, double beta, double along);
   system::Dependence depends(const system::Context&) const {
     return {.angle = with.axisymmetric() ? system::no_angle : system::each_angle, .spin = true};
   }

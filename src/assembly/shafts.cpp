@@ -213,7 +213,7 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
   const double polar = k.polar.sum();
   c.triads = {Vec3(polar, 0.5 * polar, 0.5 * polar).asDiagonal().toDenseMatrix(), 0.0,
               mass_kind(a.model), triad_share(a, shares, e)};
-  c.beta = shaft.damping.beta_internal;
+  c.beta = c.beta_axial = shaft.damping.beta_internal;
   return c;
 }
 
@@ -273,7 +273,7 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   const ShaftElementConstants& stiffer = about_z > about_y ? y : z;  // y: bending about z
   c.triads = {J, elements::shear_share(stiffer.k11, stiffer.k12, stiffer.k22), mass_kind(a.model),
               triad_share(a, shares, e)};
-  c.beta = shaft.damping.beta_internal;
+  c.beta = c.beta_axial = shaft.damping.beta_internal;
   return c;
 }
 
@@ -319,7 +319,7 @@ void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft
   ShaftElementConstants y, z;
   elements::GeneralBeamConstants c = s.general ? unequal_constants(a, shares, shaft, e, y, z)
                                                : round_constants(a, shares, shaft, e);
-  c.beta = d.beta_internal + d.beta_external;
+  c.beta = c.beta_axial = d.beta_internal + d.beta_external;
   c.beta_twist = c.beta + d.beta_torsion;
   c.alpha = d.alpha;
   const Path::Point p = shaft.path.after(e.s1), q = shaft.path.before(e.s2);

@@ -222,3 +222,51 @@ modes = 10
     EXPECT_NEAR(lists[0][k][1], lists[1][k][1], 3e-4 * lists[1][k][1]) << k;
   }
 }
+
+// A round shaft written as a general section: its stretch was damped by external_beta alone, and not at all
+// by a loss factor.
+TEST(InternalDampingDeck, DampsTheStretchOfGeneralSections) {
+  const double d = 0.05, A = pi * d * d / 4, I = A * d * d / 16;
+  const std::string general = fmt::format(
+      "general = {{ A = \"{:.17g} m^2\", Iy = \"{:.17g} m^4\", Iz = \"{:.17g} m^4\", J = "
+      "\"{:.17g} m^4\", kappa_y = 0.886, kappa_z = 0.886 }}\n",
+      A, I, I, 2 * I);
+  for (const char* damping :
+       {"internal_beta = \"2e-6 s\", external_beta = \"1e-6 s\"", "internal_loss_factor = 0.01"}) {
+    std::array<std::vector<double>, 2> decrements;
+    for (const bool as_general : {false, true}) {
+      const DeckRun run(fmt::format("format = 1\n[[shaft]]\nname = \"s\"\nmaterial = "
+                                    "\"steel\"\ndamping = {{ {} }}\n[[shaft.section]]\nname = "
+                                    "\"a\"\nlength = \"1 m\"\n{}",
+                                    damping, as_general ? general : "od = \"50 mm\"\n") +
+                        R"([[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "2e7 N/m"
+kzz = "1.5e7 N/m"
+[[bearing]]
+at = "a:end"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "1.5e7 N/m"
+[[step]]
+name = "m"
+type = "modal"
+speed = "4000 rpm"
+modes = 3
+motion = "axial"
+)");
+      ASSERT_EQ(run.exit, 0) << run.log;
+      const io::Value summary = run.summary("m");
+      for (const io::Value& m : summary.at("modes").items())
+        decrements[as_general].push_back(m.at("log decrement").number());
+    }
+    ASSERT_EQ(decrements[0].size(), 3u);
+    ASSERT_EQ(decrements[1].size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_GT(decrements[0][k], 1e-4);
+      EXPECT_NEAR(decrements[1][k], decrements[0][k], 1e-6 * decrements[0][k]) << damping << k;
+    }
+  }
+}

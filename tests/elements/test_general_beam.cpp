@@ -32,7 +32,7 @@ GeneralBeamConstants constants(double beta = 0.0) {
       -13 * L, -3 * L * L, -22 * L, 4 * L * L;
   c.M4 *= 2.0 * L / 420;
   c.triads = {Vec3(0.08, 0.05, 0.03).asDiagonal().toDenseMatrix(), 0.4};
-  c.beta = c.beta_twist = beta;
+  c.beta = c.beta_twist = c.beta_axial = beta;
   return c;
 }
 
