@@ -33,7 +33,7 @@ Check check_critical_speeds(run::Job& sub, const model::Step& step,
   // what another rotor of the deck does, and this one not with it, is none of its modes
   constexpr double with_it = 0.01;
   std::erase_if(found, [&](const CriticalMargin& m) {
-    return !moves(sub.system(), m.critical.mode.x, machine.shaft, with_it);
+    return !moves(sub.mesh, sub.system(), m.critical.mode.x, machine.shaft, with_it);
   });
   io::Table t;
   t.title = "Damped critical speeds";

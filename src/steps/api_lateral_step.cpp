@@ -261,7 +261,7 @@ void SetReport::find_modes() {
   run::Job sub(m, job_);
   results::FrequencyStep s(sub, step, "undamped modes", "undamped modes", law.max_speed);
   std::vector<analysis::Critical> found = undamped_forward(s.linear, law.max_speed, machine_.ratio);
-  keep_modes_of(sub.system(), machine_.shaft, found);
+  keep_modes_of(sub.mesh, sub.system(), machine_.shaft, found);
   std::vector<int> asked;
   for (const double k : law_.modes)
     asked.push_back(static_cast<int>(k));
@@ -552,7 +552,7 @@ std::pair<WhirlingMode, std::string> SetReport::stability_as_given() {
   run::Job sub(m, job_);
   sub.build_for(s);
   const WhirlingMode listed =
-      least_stable(run_modal_step(sub, s, law), sub.system(), machine_, law.speed);
+      least_stable(run_modal_step(sub, s, law), sub.mesh, sub.system(), machine_, law.speed);
   const WhirlingMode least = below.least.grows ? below.least : listed;
   std::string figure;
   if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())

@@ -39,7 +39,7 @@ double anticipated_of(const model::ApiStage& s, const model::ApiLateralStep& law
 
 }  // namespace
 
-WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
+WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes, const meshes::Mesh& mesh,
                           const system::System& system, const ApiMachine& machine, double speed) {
   const double Omega = machine.ratio * speed;
   // what another rotor of the deck does, and this one not with it, is none of its modes
@@ -47,7 +47,8 @@ WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
   // on unequal supports the slow modes are nearly straight lines, of either sign by little
   constexpr double backward_below = -0.5;
   const auto lateral = [&](const analysis::WhirlMode& m) {
-    return m.kind == analysis::ModeKind::lateral && moves(system, m.x, machine.shaft, with_it);
+    return m.kind == analysis::ModeKind::lateral &&
+           moves(mesh, system, m.x, machine.shaft, with_it);
   };
   const analysis::WhirlMode *best = nullptr, *forward = nullptr, *any = nullptr, *growing = nullptr;
   for (const analysis::WhirlMode& m : modes) {
@@ -153,13 +154,14 @@ WhirlingMode Level1::at(double q, bool whatever_grows) {
   o.judge = o.real_roots = whatever_grows;
   analysis::SpectrumCertificate certificate;
   WhirlingMode found = least_stable(analysis::whirl_modes(linear, speed, o, &certificate),
-                                    built.system, machine_, speed);
+                                    sub_->mesh, built.system, machine_, speed);
   if (!certificate.complete()) s_->certify(certificate, fmt::format("at Q = {:.5g} N/m", q));
   if (found.driven) return found;
   o.count = 16;  // none is: the slowest then
   o.max_frequency = infinity;
   o.certify = false;
-  return least_stable(analysis::whirl_modes(linear, speed, o), built.system, machine_, speed);
+  return least_stable(analysis::whirl_modes(linear, speed, o), sub_->mesh, built.system, machine_,
+                      speed);
 }
 
 Level1::Below Level1::modes_below(const run::Job& parent, const model::Model& m,
@@ -177,7 +179,7 @@ Level1::Below Level1::modes_below(const run::Job& parent, const model::Model& m,
     return w.frequency > 0 && w.frequency <= o.max_frequency;
   };
   return {static_cast<int>(std::count_if(modes.begin(), modes.end(), slower)),
-          least_stable(modes, job.system(), machine, speed)};
+          least_stable(modes, job.mesh, job.system(), machine, speed)};
 }
 
 Level1::Curve Level1::find_curve() {
@@ -203,12 +205,13 @@ Level1::Curve Level1::find_curve() {
 /// shaft has none within ten times the speed.
 double Level1::find_critical_ratio() const {
   const model::Model m = with_rigid_journals(machine_, model_);
-  const assembly::Built built = assembly::build_system(m, meshes::make_mesh(m), step_.name);
+  const meshes::Mesh mesh = meshes::make_mesh(m);
+  const assembly::Built built = assembly::build_system(m, mesh, step_.name);
   analysis::Linearizer linear = s_->linearizer_of(built.system);
   for (const double top : {2.0, 10.0}) {
     std::vector<analysis::Critical> found =
         undamped_forward(linear, top * law_.operating[1], machine_.ratio);
-    keep_modes_of(built.system, machine_.shaft, found);
+    keep_modes_of(mesh, built.system, machine_.shaft, found);
     if (!found.empty()) return law_.operating[1] / found.front().speed;
   }
   return nan;

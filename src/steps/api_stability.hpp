@@ -20,7 +20,7 @@ struct WhirlingMode {
 /// fast; where none grows, of those that are not backward (forwardness below -0.5) and slower than the rotor at
 /// a speed of the reference the one of least log decrement; where there is none, the slowest of them, and
 /// without these the slowest lateral one.
-WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes,
+WhirlingMode least_stable(const std::vector<analysis::WhirlMode>& modes, const meshes::Mesh& mesh,
                           const system::System& system, const ApiMachine& machine, double speed);
 
 /// Level 2: the machine as given, with its seals, against the limit of the log decrement; a machine without

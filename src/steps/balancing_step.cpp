@@ -226,7 +226,7 @@ MatX Balancing::shapes_at_planes(results::FrequencyStep& s) const {
   std::vector<analysis::Critical> found;
   for (const double beyond : {1.5, 3.0, 10.0}) {
     found = undamped_forward(s.linear, beyond * top / order_, order_);
-    keep_modes_of(s.job.system(), law_.planes.front().at.shaft, found);
+    keep_modes_of(s.job.mesh, s.job.system(), law_.planes.front().at.shaft, found);
     if (static_cast<double>(found.size()) >= highest) break;
   }
   MatX phi(static_cast<Index>(law_.modes.size()), static_cast<Index>(law_.planes.size()));

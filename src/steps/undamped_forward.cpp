@@ -30,8 +30,21 @@ std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, d
   return out;
 }
 
-bool moves(const system::System& system, const VecXc& shape, std::size_t line, double share) {
+bool moves(const meshes::Mesh& mesh, const system::System& system, const VecXc& shape,
+           std::size_t line, double share) {
   double here = 0, largest = 0;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const meshes::Line& of = mesh.lines[l];
+    for (Index k = of.first_station; k < of.first_station + of.stations; ++k) {
+      const meshes::Place& at = mesh.stations[static_cast<std::size_t>(k)].at;
+      if (at.node < 0 || at.offset == 0.0) continue;
+      // gamma (y, z) is the tilt of the axis where it is small
+      const Eigen::Vector2cd u =
+          shape.segment<2>(6 * at.node + 1) + at.offset * shape.segment<2>(6 * at.node + 4);
+      largest = std::max(largest, u.norm());
+      if (l == line) here = std::max(here, u.norm());
+    }
+  }
   for (Index i = 0; i < system.nodes(); ++i) {
     if (system.node(i).scalar) continue;
     const double u = shape.segment<2>(6 * i + 1).norm();
@@ -41,10 +54,12 @@ bool moves(const system::System& system, const VecXc& shape, std::size_t line, d
   return here > share * largest;
 }
 
-void keep_modes_of(const system::System& system, std::size_t line,
+void keep_modes_of(const meshes::Mesh& mesh, const system::System& system, std::size_t line,
                    std::vector<analysis::Critical>& modes) {
-  std::erase_if(modes,
-                [&](const analysis::Critical& c) { return !moves(system, c.mode.x, line, 0.01); });
+  constexpr double with_it = 0.01;
+  std::erase_if(modes, [&](const analysis::Critical& c) {
+    return !moves(mesh, system, c.mode.x, line, with_it);
+  });
 }
 
 double RealShape::at(double place) const {

@@ -259,3 +259,49 @@ TEST(ApiVerdicts, WhatDivergesFails) {
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_EQ(result_of(r, "log decrement"), "FAILED") << r.log;
 }
+
+// A rigid rotor has one node, which its conical mode tilts and does not move: the mode was lost, and with it
+// every unbalance of a couple.
+TEST(ApiVerdicts, CountTheConicalModeOfARigidRotor) {
+  const DeckRun d(R"(format = 1
+[output]
+report = false
+[[shaft]]
+name = "rotor"
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+at = "body:mid"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "2 kg.m^2"
+[[bearing]]
+at = "body:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[bearing]]
+at = "body:end"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[probe]]
+name = "P"
+at = "body:start"
+[[step]]
+name = "api"
+type = "api_lateral"
+operating_speed = ["4500 rpm", "4600 rpm"]
+points = 31
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("api_modes: 2 modes")) << d.log;
+  EXPECT_TRUE(d.says("mode 2, P, peak at")) << d.log;
+}
