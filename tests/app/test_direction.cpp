@@ -320,3 +320,57 @@ initial_speed = "1500 rpm"
     EXPECT_NEAR(std::remainder(last.at("p.y 1X lag [deg]") + 40.0, 360.0), 0.0, 3.0) << ratio;
   }
 }
+
+// Two motions of one frequency while the rotor turns, which rounding picked: both were called backward. One
+// turns with the spin and one against it, whichever way that is.
+TEST(Direction, MotionsOfOneFrequencyTurnBothWays) {
+  for (const char* ratio : {"1", "-1"}) {
+    const DeckRun run(fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "rotor"
+speed_ratio = {}
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+at = "body:mid"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "2 kg.m^2"
+)",
+                                  ratio) +
+                      R"([[bearing]]
+at = "body:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+[[bearing]]
+at = "body:end"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+[[step]]
+name = "c"
+type = "critical_speeds"
+max_speed = "6000 rpm"
+motion = "lateral"
+[[step]]
+name = "m"
+type = "modal"
+speed = "3000 rpm"
+modes = 2
+motion = "lateral"
+)");
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_TRUE(run.says("4270.58 (backward), 4270.58 (forward)")) << run.log;
+    const whirl::io::Value s = run.summary("m");
+    const auto& modes = s.at("modes").items();
+    ASSERT_EQ(modes.size(), 2u);
+    EXPECT_EQ(modes[0].at("direction").text(), "backward");
+    EXPECT_EQ(modes[1].at("direction").text(), "forward");
+  }
+}

@@ -307,6 +307,14 @@ double lowest_speed(double min_speed, double max_speed) {
   return min_speed > 0 ? min_speed : 1e-3 * max_speed;
 }
 
+namespace {
+
+bool same_speed(const Critical& a, const Critical& b) {
+  return std::abs(a.speed - b.speed) <= 1e-9 * b.speed;
+}
+
+}  // namespace
+
 std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
                                       SpectrumCertificate* certificate) {
   if (!(options.max_speed > options.min_speed) || !(options.order > 0))
@@ -319,6 +327,13 @@ std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions&
       o.damped ? damped(linear, o, low, certificate) : undamped(linear, o, low);
   std::sort(out.begin(), out.end(),
             [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  for (std::size_t k = 0; k + 1 < out.size(); ++k) {
+    WhirlMode &a = out[k].mode, &b = out[k + 1].mode;
+    const bool lateral = a.kind == ModeKind::lateral && b.kind == ModeKind::lateral;
+    if (!lateral || !same_speed(out[k], out[k + 1])) continue;
+    separate_pair(linear, true, a, b);
+    ++k;
+  }
   return out;
 }
 
@@ -336,10 +351,6 @@ struct MapPoint {
   la::MCK matrices;  ///< mass: the metric
   std::vector<Entry> entries;
 };
-
-bool same_speed(const Critical& a, const Critical& b) {
-  return std::abs(a.speed - b.speed) <= 1e-9 * b.speed;
-}
 
 /// Share of x within the space, 0 .. 1, in the metric of the mass.
 double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {

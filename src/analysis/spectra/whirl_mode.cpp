@@ -212,30 +212,46 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   return w;
 }
 
-void separate_at_rest(const Linearizer& linear, WhirlMode& first, WhirlMode& second) {
+namespace {
+
+/// Lateral displacement of a node, or where a mode tilts it alone that of its axis.
+Eigen::Vector2cd motion_across(const Linearizer& linear, const WhirlMode& w, Index node,
+                               bool tilts) {
+  if (tilts) return {w.x[6 * node + 5], -w.x[6 * node + 4]};
+  return local_displacement(linear, w.x, node).tail<2>();
+}
+
+}  // namespace
+
+void separate_pair(const Linearizer& linear, bool turning, WhirlMode& first, WhirlMode& second) {
   const system::System& s = linear.system();
   Index top = -1;
-  double largest = 0.0;
-  for (Index i = 0; i < s.nodes(); ++i) {
-    if (s.node(i).scalar) continue;
-    const double size = (local_displacement(linear, first.x, i).tail<2>().cwiseAbs2() +
-                         local_displacement(linear, second.x, i).tail<2>().cwiseAbs2())
-                            .sum();
-    if (size > (1.0 + 1e-9) * largest) {
+  bool tilts = false;
+  for (const bool by_tilt : {false, true}) {
+    double largest = 0.0;
+    for (Index i = 0; i < s.nodes() && (!by_tilt || top < 0); ++i) {
+      if (s.node(i).scalar) continue;
+      const double size = motion_across(linear, first, i, by_tilt).squaredNorm() +
+                          motion_across(linear, second, i, by_tilt).squaredNorm();
+      constexpr double first_of_equals = 1.0 + 1e-9;
+      if (!(size > first_of_equals * largest)) continue;
       largest = size;
       top = i;
     }
+    tilts = by_tilt;
+    if (top >= 0) break;
   }
   if (top < 0) return;
   Eigen::Matrix2cd u;
-  u.col(0) = local_displacement(linear, first.x, top).tail<2>();
-  u.col(1) = local_displacement(linear, second.x, top).tail<2>();
+  u.col(0) = motion_across(linear, first, top, tilts);
+  u.col(1) = motion_across(linear, second, top, tilts);
   const Complex det = u(0, 0) * u(1, 1) - u(0, 1) * u(1, 0);
   if (!(std::abs(det) > 1e-3 * u.col(0).norm() * u.col(1).norm())) return;
   const VecXc y = (u(1, 1) * first.x - u(1, 0) * second.x) / det;
   const VecXc z = (u(0, 0) * second.x - u(0, 1) * first.x) / det;
-  first.x = y;
-  second.x = z;
+  const Complex ahead(0.0, -linear.sense(top));  // z against y of forward whirl
+  first.x = turning ? VecXc(y - ahead * z) : y;
+  second.x = turning ? VecXc(y + ahead * z) : z;
   for (WhirlMode* w : {&first, &second}) {
     normalise_shape(s, *w);
     find_direction(linear, *w);

@@ -55,9 +55,10 @@ double rounding_of(const la::Mode& mode);
 /// Fills kind, direction and the rest from lambda and x. Scales x.
 WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear);
 
-/// At rest two lateral modes of one frequency span a plane of shapes, out of which rounding picks two:
-/// makes them the one that moves along y, and the one along z, where they move most.
-void separate_at_rest(const Linearizer& linear, WhirlMode& first, WhirlMode& second);
+/// Two lateral modes of one root span a plane of shapes, out of which rounding picks two: makes them, where
+/// they move most, the one along y and the one along z, or, of a rotor that turns, the circle against its
+/// spin and the one with it.
+void separate_pair(const Linearizer& linear, bool turning, WhirlMode& first, WhirlMode& second);
 
 /// |x^H M y|^2/((x^H M x)(y^H M y)), 0 .. 1: likeness of two shapes.
 double likeness(const la::MCK& m, const VecXc& x, const VecXc& y);

@@ -459,11 +459,11 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
     if (!options_.certify) certificate_.open = "not asked for";
     solve_counted(Omega);
   }
-  if (Omega == 0.0) separate_pairs_at_rest();
+  separate_pairs(Omega != 0.0);
   return modes_;
 }
 
-void WhirlSolver::separate_pairs_at_rest() {
+void WhirlSolver::separate_pairs(bool turning) {
   constexpr double same = 1e-8;
   for (std::size_t k = 0; k + 1 < modes_.size(); ++k) {
     WhirlMode &a = modes_[k], &b = modes_[k + 1];
@@ -471,7 +471,7 @@ void WhirlSolver::separate_pairs_at_rest() {
     if (!lateral || a.frequency == 0.0 ||
         !(std::abs(a.lambda - b.lambda) < same * std::abs(a.lambda)))
       continue;
-    separate_at_rest(linear_, a, b);
+    separate_pair(linear_, turning, a, b);
     ++k;
   }
 }

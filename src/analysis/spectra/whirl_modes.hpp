@@ -78,7 +78,8 @@ class WhirlSolver {
   /// damping at their mean rate.
   void separate(double Omega, std::vector<la::Mode>& group);
   void solve_counted(double Omega);
-  void separate_pairs_at_rest();
+  /// Lateral modes of one root (separate_pair).
+  void separate_pairs(bool turning);
   std::optional<GrowthBound::Quiet> quiet_above(const la::MCK& m, double reached);
   /// Modes with one set of matrices and, where stability is judged, all that grows.
   const std::vector<la::Mode>& judged(const la::MCK& m, double Omega, SpectrumCertificate& known);
