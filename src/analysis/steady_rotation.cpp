@@ -389,6 +389,11 @@ void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
     if (spinning_[at(i)]) v[6 * i + 3] = Omega * ratio_[at(system_.node(i).line)];
 }
 
+void SteadySystem::turn_line(Index line, double by, Eigen::Ref<VecX> q) const {
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)] && system_.node(i).line == line) q[6 * i + system::spin_phi] += by;
+}
+
 void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
   WHIRL_EXPECTS(q.size() == system_.size());
   std::vector<double> lead(at(system_.lines()), nan);
@@ -401,8 +406,11 @@ void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
     double x = h.law->at(running_.time).f;
     if (h.unknown % 6 == system::spin_phi && spinning_[at(i)]) {
       double& first = lead[at(system_.node(i).line)];
-      if (std::isnan(first)) first = x;
-      x -= first;
+      if (std::isnan(first)) {
+        first = x;
+        if (!running_.mean) turn_line(system_.node(i).line, x - q[h.unknown], q);
+      }
+      if (running_.mean) x -= first;
     } else if (h.unknown % 6 == system::spin_phi) {
       x -= two_pi * f.turns[at(system_.node(i).line)];
     }

@@ -89,7 +89,7 @@ class SteadySystem {
   /// @throws Error (E78) when a line that shall turn is held against it.
   void set_rates(double Omega, Eigen::Ref<VecX> v) const;
   /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the
-  /// first prescribed one.
+  /// first prescribed one, or, where nothing is a mean over a revolution, as it stands, with its line.
   void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
   /// Internal unknowns that elements balance themselves (system::System::relax) into q.
   void relax(const system::Frames& f, double Omega, VecX& q);
@@ -128,6 +128,8 @@ class SteadySystem {
   bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
 
  private:
+  /// Turns all of a line, rad.
+  void turn_line(Index line, double by, Eigen::Ref<VecX> q) const;
   using Terms = std::vector<std::size_t>;
   bool evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta,
                          VecX& r, const Terms& only);

@@ -77,14 +77,14 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   if (!step.from.empty()) {
     StepState s = states.at(step.from);
-    const bool in_motion = goes_on_in_motion(step);
+    const bool in_motion = goes_on_in_motion(step), turning = s.speed != 0.0;
     if (speed) s.speed = *speed;
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
       const meshes::Line& line = mesh.lines[l];
       const assembly::LineSpin& law = built.spins[l];
-      // an equilibrium has its lines at angle zero, a drive may begin elsewhere
+      // an equilibrium that turns has its lines at angle zero, a drive may begin elsewhere
       const double turned =
-          in_time && !in_motion && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
+          in_time && !in_motion && turning && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
       for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
         s.state.q[6 * n + system::spin_phi] += turned;
         if (speed)
@@ -228,11 +228,14 @@ analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions
   const VecX begun = start.state.q;
   start.state = found.state;
   start.state.a.setZero();
-  // the equilibrium has its lines at angle zero
-  if (in_time)
-    for (const meshes::Line& line : mesh.lines)
-      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
-        start.state.q[6 * n + system::spin_phi] += begun[6 * line.first_node + system::spin_phi];
+  // an equilibrium that turns has its lines at angle zero, one at rest those of drives at theirs
+  if (!in_time) return found;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    if (!running.mean && built.spins[l].prescribed) continue;
+    const meshes::Line& line = mesh.lines[l];
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+      start.state.q[6 * n + system::spin_phi] += begun[6 * line.first_node + system::spin_phi];
+  }
   return found;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace {
 
@@ -125,4 +126,58 @@ general = { A = "1000 mm^2", Iy = "2e4 mm^4", Iz = "5e5 mm^4", J = "9e4 mm^4", k
             "amount = \"50 um\", time_constant = \"1 s\" }\n"));
   EXPECT_NE(bowed.exit, 0);
   EXPECT_TRUE(bowed.says("the thermal bow of shaft 's'")) << bowed.log;
+}
+
+// A drive holds a bowed shaft at 30 degrees: the bow of 40 degrees lies at 70, and nothing moves.
+TEST(Starts, AtRestTheRotorLiesAtTheAngleOfItsDrive) {
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "s"
+material = "steel"
+bow = { amount = "50 um", phase = "40 deg" }
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 20], ["b", 500, 20]]
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[probe]]
+name = "P"
+at = "a:end"
+[[drive]]
+at = "a:start"
+type = "speed"
+speed = "0 rpm"
+angle = "30 deg"
+[[step]]
+name = "st"
+type = "static"
+[[step]]
+name = "t"
+type = "transient"
+duration = "20 ms"
+start = "static"
+[[step]]
+name = "t2"
+type = "transient"
+duration = "20 ms"
+from = "st"
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  constexpr double degree = std::numbers::pi / 180, bow = 50e-6, angle = 70 * degree;
+  for (const char* file : {"t.csv", "t2.csv"}) {
+    const Columns t = d.csv(file);
+    for (const auto& cells : t.rows) {
+      const auto row = t.named(cells);
+      EXPECT_NEAR(row.at("P.y [m]"), bow * std::cos(angle), 1e-9) << file;
+      EXPECT_NEAR(row.at("P.z [m]"), bow * std::sin(angle), 1e-9) << file;
+      EXPECT_NEAR(row.at("phi [rad]"), 30 * degree, 1e-12) << file;
+    }
+  }
 }
