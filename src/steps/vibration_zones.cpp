@@ -144,7 +144,7 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
   t.nan_means = "without bound";
   t.columns = {{"probe", "-", ""},
                {"speed", "rpm", "of the operating speeds, where it comes nearest to the borders"},
-               {"amplitude", "um", "major axis, peak to peak"},
+               {"amplitude peak to peak", "um", "major axis"},
                {"A/B", "um", "border of the zones, at the speed of the probe's own shaft"},
                {"B/C", "um", ""},
                {"C/D", "um", ""},

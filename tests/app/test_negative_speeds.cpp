@@ -100,7 +100,7 @@ TEST(NegativeSpeeds, PeaksMarginsAndZones) {
                                    {"u_peaks.csv", "amplitude [m]"},
                                    {"u_margins.csv", "required [%]"},
                                    {"u_margins.csv", "actual [%]"},
-                                   {"u_zones.csv", "amplitude [um]"}}) {
+                                   {"u_zones.csv", "amplitude peak to peak [um]"}}) {
     std::vector<double> one = column(forth.csv(file), name);
     std::vector<double> other = column(back.csv(file), name);
     std::sort(one.begin(), one.end());
