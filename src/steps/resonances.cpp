@@ -1,6 +1,7 @@
 #include <steps/resonances.hpp>
 
 #include <analysis/spectra/critical.hpp>
+#include <analysis/spectra/rotating_axes.hpp>
 #include <core/error.hpp>
 #include <results/linear_limits.hpp>
 #include <steps/criticals_between.hpp>
@@ -102,6 +103,20 @@ void refine_at_criticals(results::FrequencyStep& s, analysis::Motion motion, Dri
   try {
     for (const analysis::Critical& c : criticals_between(s, o, grid.front(), grid.back()))
       if (has_peak(driven, c.mode)) add_places(c.speed, c.mode.damping_ratio, places);
+  } catch (const Error& e) {
+    warn_of_coarse_grid(s, e);
+  }
+  put_into(grid, places);
+}
+
+void refine_at_poles(results::FrequencyStep& s, std::vector<double>& grid) {
+  if (grid.front() == grid.back()) return;
+  std::vector<double> places;
+  try {
+    analysis::Linearizer linear(s.linear);
+    analysis::RotatingAxes axes(linear, grid.back());
+    for (const Complex pole : axes.poles(grid.front(), grid.back()))
+      add_places(pole.real(), pole.imag() / std::abs(pole), places);
   } catch (const Error& e) {
     warn_of_coarse_grid(s, e);
   }

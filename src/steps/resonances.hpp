@@ -22,5 +22,8 @@ void refine_at_frequencies(results::FrequencyStep& s, analysis::Motion motion, D
 /// Damped critical speeds of an order into a grid of speeds of either sign; likewise.
 void refine_at_criticals(results::FrequencyStep& s, analysis::Motion motion, Driven driven,
                          double order, std::vector<double>& grid);
+/// Speeds at which the steady motions of a rotor have their peaks whose matrices turn with it
+/// (RotatingAxes::poles), likewise.
+void refine_at_poles(results::FrequencyStep& s, std::vector<double>& grid);
 
 }  // namespace whirl::steps

@@ -681,13 +681,13 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   if (o.breathes || o.turns_with_rotor) o.multiples = 3;
   if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
+    // what turns unevenly has peaks beside the critical speeds of its mean, and the weight shakes it at
+    // twice the speed
+    if (o.multiples > 0) refine_at_poles(s, o.speeds);
     const auto orders = s.linear.running().orders();
     for (const double order : std::vector<double>(orders.begin(), orders.end()))
-      refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true}, order, o.speeds);
-    // the weight shakes what turns unevenly at twice the speed
-    if (o.multiples > 0)
-      refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true},
-                          2.0 * s.linear.running().orders()[0], o.speeds);
+      if (o.multiples == 0)
+        refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true}, order, o.speeds);
     o.resolve = s.linear.running().running().frequency_dependent();
   }
   analysis::UnbalanceSolver solver(s.linear, o);

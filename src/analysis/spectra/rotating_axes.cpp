@@ -453,9 +453,7 @@ VecX RotatingAxes::unbalanced(double Omega, const std::vector<Index>& orders) {
   return out;
 }
 
-std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
-  WHIRL_EXPECTS(count >= 2);
-  const system::System& s = linear_.system();
+const la::MCK& RotatingAxes::at_odd(double Omega) {
   if (odd_.empty()) {
     // a force of fixed direction turns backwards once a revolution here, and what has the period of
     // half a revolution joins every other multiple to that
@@ -465,14 +463,21 @@ std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
     odd_active_ = active_of(motion_.active(), parts_of(odd_));
     odd_hill_ = la::MCK(*odd_pattern_);
   }
+  balance(Omega, hysteretic() ? Complex(0, std::abs(speed(Omega))) : Complex(), odd_, odd_hill_);
+  return odd_hill_;
+}
+
+std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
+  WHIRL_EXPECTS(count >= 2);
+  const system::System& s = linear_.system();
   const double W = speed(Omega);
-  balance(Omega, hysteretic() ? Complex(0, std::abs(W)) : Complex(), odd_, odd_hill_);
+  const la::MCK& matrices = at_odd(Omega);
   VecX x = unbalanced(Omega, odd_);
   for (Index k = 0; k < x.size(); ++k)
     if (!odd_active_[idx(k)]) x[k] = 0.0;
   std::vector<VecXc> out(idx(count + 1), VecXc::Zero(s.size()));
   const auto direct = la::make_direct_solver<double>(*odd_pattern_, odd_active_);
-  if (direct->factor(odd_hill_, 0.0, 0.0, 1.0) != la::Status::ok) {
+  if (direct->factor(matrices, 0.0, 0.0, 1.0) != la::Status::ok) {
     for (VecXc& a : out)
       a.setConstant(Complex(nan, nan));
     return out;

@@ -67,6 +67,11 @@ class RotatingAxes {
   /// @pre ascending speeds; sense: as of BandOptions.
   std::optional<std::vector<Resonance>> resonances(const std::vector<double>& speeds,
                                                    double sense) const;
+  /// Complex speeds of the reference, rad/s, at which response() or multiples() have no bound, their real
+  /// parts from low to high and ascending, imaginary parts >= 0: each is the place of a peak and half its
+  /// width; a real one, of a peak without bound. Those too faint to be seen are left out. Exact where
+  /// matrices are quadratic in the speed; elsewhere found on pieces of the range, then settled.
+  std::vector<Complex> poles(double low, double high);
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
   double constant_share(const VecXc& x) const;
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
@@ -100,6 +105,11 @@ class RotatingAxes {
   void balance(double Omega, Complex lambda, const std::vector<Index>& orders, la::MCK& out);
   /// Node i, part j -> node parts i + j: neighbours stay neighbours.
   std::unique_ptr<la::BlockPattern> make_pattern(Index parts) const;
+  /// Matrices of multiples(), as at().
+  const la::MCK& at_odd(double Omega);
+  /// A matrix of a steady motion, whose multiples of the angle of the axes these are.
+  struct Steady;
+  void find_poles(const Steady& of, double low, double high, std::vector<Complex>& out);
   /// What is unbalanced at the equilibrium, in these parts.
   VecX unbalanced(double Omega, const std::vector<Index>& orders);
   /// Matrices in rotating axes at one angle of these, on the system's pattern, into turned_.
