@@ -184,27 +184,47 @@ plot::Figure multiples_figure(const results::FrequencyStep& s, const UnbalanceRe
   return f;
 }
 
-/// Largest amplitude of all probes at a multiple of the speed, and the speed there.
-Largest largest_of_multiple(const UnbalanceResponse& r, std::size_t h) {
+/// Largest amplitude of all probes at a multiple of the speed, and the speed there; infinite where a peak has
+/// no bound.
+Largest largest_of_multiple(const UnbalanceResponse& r,
+                            const std::vector<analysis::MultiplePeak>& peaks, std::size_t h) {
   Largest out;
+  for (const analysis::MultiplePeak& p : peaks)
+    if (p.multiple == h && p.amplitude > out.amplitude) out = {p.amplitude, p.speed};
   for (const SteadyPoint& x : r.points) {
-    if (h >= x.multiple.size()) continue;
+    if (h >= x.multiple.size() || out.amplitude == infinity) continue;
     for (const analysis::PointAmplitude& a : x.multiple[h])
       if (a.orbit().major > out.amplitude) out = {a.orbit().major, x.Omega};
   }
   return out;
 }
 
-/// ", at twice the speed 6.9 mm at 410 rpm": where it is no rounding.
+/// Largest amplitude of all probes at the speed itself, at the point nearest to a speed.
+double largest_once_beside(const UnbalanceResponse& r, double speed) {
+  const SteadyPoint& nearest = *std::min_element(
+      r.points.begin(), r.points.end(), [speed](const SteadyPoint& a, const SteadyPoint& b) {
+        return std::abs(a.Omega - speed) < std::abs(b.Omega - speed);
+      });
+  double most = 0;
+  for (const analysis::PointAmplitude& a : nearest.multiple[1])
+    most = std::max(most, a.orbit().major);
+  return most;
+}
+
+/// ", at twice the speed 6.9 mm at 410 rpm": where it is no rounding. bounded: what is once a revolution is
+/// everywhere, and says what is small beside it.
 std::string add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
-                          const std::vector<analysis::ResponseProbe>& probes, int multiples,
-                          bool breathes) {
+                          const std::vector<analysis::ResponseProbe>& probes,
+                          const std::vector<analysis::MultiplePeak>& peaks, int multiples,
+                          bool breathes, bool bounded) {
   if (multiples == 0) return {};
   constexpr double seen = 1e-3, rounding = 1e-9;
-  const double once = largest_of_multiple(r, 1).amplitude;
-  const Largest twice = largest_of_multiple(r, 2);
+  const Largest twice = largest_of_multiple(r, peaks, 2);
+  const double once =
+      bounded ? largest_of_multiple(r, {}, 1).amplitude : largest_once_beside(r, twice.speed);
   if (!breathes && twice.amplitude <= rounding * once) return {};
-  s.summary()["largest at twice the speed 0-peak [m]"] = twice.amplitude;
+  s.summary()["largest at twice the speed 0-peak [m]"] =
+      std::isfinite(twice.amplitude) ? twice.amplitude : nan;
   s.add_table("multiples", multiples_table(r, probes, multiples), false);
   for (std::size_t p = 0; p < probes.size(); ++p)
     s.add_figure(multiples_figure(s, r, probes[p], p, multiples));
@@ -213,6 +233,8 @@ std::string add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
     left_out = std::max(left_out, x.left_out);
   if (breathes) s.summary()["left out of the Fourier series, share"] = left_out;
   if (twice.amplitude <= seen * once) return {};
+  if (!std::isfinite(twice.amplitude))
+    return fmt::format(", at twice the speed without bound at {:.6g} rpm", to_rpm(twice.speed));
   const plot::DisplayUnit unit = plot::length_unit(twice.amplitude);
   return fmt::format(", at twice the speed {} {} at {:.6g} rpm",
                      readable(unit.factor * twice.amplitude), unit.name, to_rpm(twice.speed));
@@ -556,7 +578,7 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
     gaps.look(x.Omega, all);
   };
   if (largest.amplitude > 0) look(solver.at(largest.speed));
-  const double twice = largest_of_multiple(r, 2).speed;
+  const double twice = largest_of_multiple(r, {}, 2).speed;
   if (twice != 0.0) look(solver.at(twice));
   for (const double Omega : speeds) {
     const SteadyPoint x = solver.at(Omega);
@@ -623,21 +645,31 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   return out;
 }
 
-/// Where amplitudes have no bound.
-void warn_of_unbounded(results::FrequencyStep& s, const std::vector<analysis::ResponsePeak>& peaks,
-                       const analysis::UnbalanceOptions& o) {
+/// "3004.4, 5137.2": of the peaks that have no bound.
+template <class Peak>
+std::string unbounded_among(const std::vector<Peak>& peaks) {
   std::vector<double> speeds;
-  for (const analysis::ResponsePeak& p : peaks)
-    if (!p.bounded && (speeds.empty() || std::abs(p.speed - speeds.back()) > 1e-6 * p.speed))
+  for (const Peak& p : peaks)
+    if (!p.bounded &&
+        (speeds.empty() || std::abs(p.speed - speeds.back()) > 1e-6 * std::abs(p.speed)))
       speeds.push_back(p.speed);
-  if (speeds.empty()) return;
   std::string list;
   for (const double x : speeds)
     list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", to_rpm(x));
+  return list;
+}
+
+/// Where amplitudes have no bound.
+void warn_of_unbounded(results::FrequencyStep& s, const std::vector<analysis::ResponsePeak>& peaks,
+                       const std::vector<analysis::MultiplePeak>& of_multiples,
+                       const analysis::UnbalanceOptions& o) {
+  const std::string once = unbounded_among(peaks), more = unbounded_among(of_multiples);
+  if (once.empty() && more.empty()) return;
   Diagnostic d;
   d.code = "W13";
   d.message =
-      fmt::format("step '{}': the response has no bound at {} rpm: {}", s.step.name, list,
+      fmt::format("step '{}': the response{} has no bound at {} rpm: {}", s.step.name,
+                  once.empty() ? " at a multiple of the speed" : "", once.empty() ? more : once,
                   o.breathes           ? "there is no periodic motion beside it"
                   : o.turns_with_rotor ? "nothing damps it there, or the rotor begins to bend out"
                                        : "nothing damps it there");
@@ -696,13 +728,16 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
     return solver.run();
   }();
   std::vector<analysis::ResponsePeak> peaks = solver.peaks();
-  std::erase_if(peaks, [&](const analysis::ResponsePeak& p) { return p.probe >= shown.size(); });
+  std::vector<analysis::MultiplePeak> of_multiples = solver.peaks_of_multiples();
+  const auto is_beside = [&](const auto& p) { return p.probe >= shown.size(); };
+  std::erase_if(peaks, is_beside);
+  std::erase_if(of_multiples, is_beside);
 
   s.summary()["speeds"] = r.points.size();
   const Largest largest = find_largest(r, shown, peaks, s.summary());
   const auto unbounded = std::find_if(peaks.begin(), peaks.end(),
                                       [](const analysis::ResponsePeak& p) { return !p.bounded; });
-  warn_of_unbounded(s, peaks, o);
+  warn_of_unbounded(s, peaks, of_multiples, o);
   warn_of_no_motion(s, r);
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
@@ -724,7 +759,8 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   const std::string margins = add_margins(s, r, shown, peaks, law);
   warn_of_unshown_criticals(s, r, shown, peaks, law);
   add_probe_figures(s, r, shown, peaks);
-  const std::string twice = add_multiples(s, r, shown, o.multiples, o.breathes);
+  const std::string twice =
+      add_multiples(s, r, shown, of_multiples, o.multiples, o.breathes, unbounded == peaks.end());
   add_force_figure(s, r, o.outputs);
   add_zones(s, with_peaks(r, peaks, solver, law), shown, peaks, law);
   add_grades(s, law);

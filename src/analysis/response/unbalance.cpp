@@ -316,11 +316,15 @@ bool UnbalanceSolver::is_bounded(const ResponsePeak& peak) {
 
 void UnbalanceSolver::drop_unbounded(std::vector<SteadyPoint>& points) const {
   constexpr double near = 1e-6;
-  std::erase_if(points, [&](const SteadyPoint& x) {
-    return std::any_of(peaks_.begin(), peaks_.end(), [&](const ResponsePeak& p) {
-      return !p.bounded && std::abs(x.Omega - p.speed) < near * std::abs(p.speed);
+  const auto drop = [&](const auto& peaks) {
+    std::erase_if(points, [&](const SteadyPoint& x) {
+      return std::any_of(peaks.begin(), peaks.end(), [&](const auto& p) {
+        return !p.bounded && std::abs(x.Omega - p.speed) < near * std::abs(p.speed);
+      });
     });
-  });
+  };
+  drop(peaks_);
+  drop(peaks_of_multiples_);
 }
 
 UnbalanceResponse UnbalanceSolver::run() {
@@ -329,6 +333,7 @@ UnbalanceResponse UnbalanceSolver::run() {
   const auto orders = linear_.running().orders();
   out.orders.assign(orders.begin(), orders.end());
   peaks_.clear();
+  peaks_of_multiples_.clear();
   out.points = points_at(options_.speeds);
   if (std::none_of(out.points.begin(), out.points.end(),
                    [](const SteadyPoint& p) { return p.found; }))
@@ -349,34 +354,53 @@ UnbalanceResponse UnbalanceSolver::run() {
         open, [&](std::size_t k) { return !shows_another(out.points, k / probes, k % probes); });
   }
   drop_unbounded(out.points);
-  if (options_.refine_peaks) add_tops_of_multiples(out.points);
+  if (options_.refine_peaks) find_peaks_of_multiples(out.points);
+  drop_unbounded(out.points);
   return out;
 }
 
-void UnbalanceSolver::add_tops_of_multiples(std::vector<SteadyPoint>& points) {
-  constexpr double close_enough = 1e-4;  // of the speed
-  constexpr double seen = 1e-3;          // of the largest, of all multiples
-  std::vector<SteadyPoint> tops;
-  for (int h = 2; h <= options_.multiples; ++h)
-    for (std::size_t probe = 0; probe < options_.probes.size(); ++probe) {
-      const auto size = [&](const SteadyPoint& p) {
-        return p.multiple[static_cast<std::size_t>(h)][probe].orbit().major;
-      };
-      double largest = 0;
-      std::vector<double> sizes;
-      for (const SteadyPoint& p : points) {
-        sizes.push_back(size(p));
-        largest = std::max({largest, sizes.back(), p.multiple[1][probe].orbit().major});
-      }
-      for (const std::size_t i : maxima_of(sizes)) {
-        if (!(sizes[i] > seen * largest)) continue;
-        const double top =
-            find_maximum(points[i - 1].Omega, points[i].Omega, sizes[i], points[i + 1].Omega,
-                         close_enough, [&](double Omega) { return size(at(Omega)); });
-        tops.push_back(at(top));
-      }
-    }
-  std::move(tops.begin(), tops.end(), std::back_inserter(points));
+PointAmplitude UnbalanceSolver::multiple_at(double Omega, std::size_t h, std::size_t probe) {
+  if (!axes_) return at(Omega, false).multiple[h][probe];
+  linear_.move_to(Omega);
+  VecXc a = axes_->multiples(Omega, options_.multiples)[h];
+  linear_.system().complete(linear_.equilibrium().state, a);
+  return amplitude_at(linear_, a, options_.probes[probe].point);
+}
+
+void UnbalanceSolver::find_peaks_of_multiple(std::size_t h, std::size_t probe,
+                                             const std::vector<SteadyPoint>& points) {
+  constexpr double close_enough = 1e-8;  // of the speed
+  constexpr double seen = 1e-3;          // of the largest at all speeds
+  constexpr double rounding = 1e-9;      // of the speed itself
+  const auto size = [&](const SteadyPoint& p, std::size_t k) {
+    return p.multiple[k][probe].orbit().major;
+  };
+  std::vector<double> sizes;
+  for (const SteadyPoint& p : points)
+    sizes.push_back(size(p, h));
+  double largest = 0;
+  for (const double x : sizes)
+    largest = std::max(largest, x);  // not of what was not found
+  for (const std::size_t i : maxima_of(sizes)) {
+    if (!(sizes[i] > std::max(seen * largest, rounding * size(points[i], 1)))) continue;
+    const auto at_speed = [&](double Omega) { return multiple_at(Omega, h, probe); };
+    MultiplePeak peak{h, probe};
+    peak.speed =
+        find_maximum(points[i - 1].Omega, points[i].Omega, sizes[i], points[i + 1].Omega,
+                     close_enough, [&](double Omega) { return at_speed(Omega).orbit().major; });
+    peak.bounded = !turns_about(at_speed(peak.speed * (1 - beside_resonance)),
+                                at_speed(peak.speed * (1 + beside_resonance)));
+    peak.amplitude = peak.bounded ? at_speed(peak.speed).orbit().major : infinity;
+    peaks_of_multiples_.push_back(peak);
+  }
+}
+
+void UnbalanceSolver::find_peaks_of_multiples(std::vector<SteadyPoint>& points) {
+  for (std::size_t h = 2; h < points.front().multiple.size(); ++h)
+    for (std::size_t probe = 0; probe < options_.probes.size(); ++probe)
+      find_peaks_of_multiple(h, probe, points);
+  for (const MultiplePeak& peak : peaks_of_multiples_)
+    if (peak.bounded) points.push_back(at(peak.speed));
   sort_apart(points);
 }
 

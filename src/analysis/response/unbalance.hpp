@@ -73,6 +73,13 @@ struct ResponsePeak {
   double amplification_bound() const;
 };
 
+/// A peak of a multiple of the speed, from the second on, in the motion of a probe: the major axis of its orbit.
+struct MultiplePeak {
+  std::size_t multiple = 2, probe = 0;
+  double speed = 0, amplitude = 0;  ///< rad/s, m
+  bool bounded = true;              ///< as of ResponsePeak
+};
+
 class UnbalanceSolver {
  public:
   UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& options);
@@ -82,6 +89,8 @@ class UnbalanceSolver {
   /// Peaks of the last run, by order, probe, speed. Found to 1e-9 of the speed, half-power points
   /// too.
   const std::vector<ResponsePeak>& peaks() const { return peaks_; }
+  /// The same of the multiples, where peaks are refined. Found to 1e-8 of the speed.
+  const std::vector<MultiplePeak>& peaks_of_multiples() const { return peaks_of_multiples_; }
 
  private:
   /// At the speeds in their order: equilibria one after the other, responses side by side.
@@ -104,8 +113,11 @@ class UnbalanceSolver {
   bool is_bounded(const ResponsePeak& peak);
   /// Takes out what stands at peaks without bound: rounding.
   void drop_unbounded(std::vector<SteadyPoint>& points) const;
-  /// The speeds at which multiples of the speed are largest in the motion of a probe, between points.
-  void add_tops_of_multiples(std::vector<SteadyPoint>& points);
+  /// Peaks of the multiples of the speed between points, and points there.
+  void find_peaks_of_multiples(std::vector<SteadyPoint>& points);
+  void find_peaks_of_multiple(std::size_t h, std::size_t probe,
+                              const std::vector<SteadyPoint>& points);
+  PointAmplitude multiple_at(double Omega, std::size_t h, std::size_t probe);
   /// Half-power points of a peak near the sample i.
   void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
   /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low
@@ -132,6 +144,7 @@ class UnbalanceSolver {
   std::unique_ptr<PeriodicResponse> periodic_;
   std::unique_ptr<VariationMeter> meter_;
   std::vector<ResponsePeak> peaks_;
+  std::vector<MultiplePeak> peaks_of_multiples_;
 };
 
 }  // namespace whirl::analysis
