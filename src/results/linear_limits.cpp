@@ -28,9 +28,11 @@ namespace {
 /// Free motions of a step's rotor that grow, whether its response lists modes or not.
 class Growth {
  public:
-  Growth(FrequencyStep& s, analysis::Motion motion)
+  /// judged: rad/s; lateral motions slower than this are left out.
+  Growth(FrequencyStep& s, analysis::Motion motion, double judged = 0.0)
       : step_(s),
         motion_(motion),
+        judged_(judged),
         solver_(s.linear, options()),
         mesh_(s) {}
   /// What grows at a speed, or "".
@@ -64,13 +66,13 @@ class Growth {
     o.real_roots = true;
     return o;
   }
-  static std::optional<analysis::WhirlMode> fastest(analysis::WhirlSolver& solver, double Omega) {
-    const std::vector<analysis::WhirlMode>& modes = solver.solve(Omega);
-    const auto found = std::max_element(
-        modes.begin(), modes.end(), [](const analysis::WhirlMode& a, const analysis::WhirlMode& b) {
-          return a.lambda.real() < b.lambda.real();
-        });
-    if (found == modes.end() || found->growth() <= 0) return std::nullopt;
+  std::optional<analysis::WhirlMode> fastest(analysis::WhirlSolver& solver, double Omega) const {
+    const analysis::WhirlMode* found = nullptr;
+    for (const analysis::WhirlMode& m : solver.solve(Omega)) {
+      if (m.kind == analysis::ModeKind::lateral && m.frequency < judged_) continue;
+      if (!found || m.lambda.real() > found->lambda.real()) found = &m;
+    }
+    if (!found || found->growth() <= 0) return std::nullopt;
     return *found;
   }
   bool is_resolved(const analysis::WhirlMode& mode, double Omega) {
@@ -84,6 +86,7 @@ class Growth {
 
   FrequencyStep& step_;
   analysis::Motion motion_;
+  double judged_;
   analysis::WhirlSolver solver_;
   MeshAccuracy mesh_;
   std::optional<RefinedModel> refined_;
@@ -93,9 +96,11 @@ class Growth {
 
 /// The band of speeds in which free motions of a rotor grow whose stiffness or inertia turns with it: the
 /// first of those between the speeds, all in the same sense; the band is that of their magnitudes. Harmonics left out of Hill's equations may make one of nothing:
-/// it is there with two more of them too.
+/// it is there with two more of them too. counted_to: rad/s, fixed axes; slower motions are counted at every
+/// speed, 0 where they are not.
 std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
-                                                    const std::vector<double>& speeds) {
+                                                    const std::vector<double>& speeds,
+                                                    double& counted_to) {
   constexpr Index modes = 8, more = 2;
   analysis::BandOptions o;
   o.modes = modes;
@@ -106,6 +111,8 @@ std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
   const double probed = o.sense * o.speeds.back();
   analysis::RotatingAxes axes(s.linear, probed);
   const analysis::BandResult found = analysis::find_bands(axes, o);
+  counted_to =
+      found.complete() ? std::max(0.0, found.counted_to - std::abs(axes.speed(probed))) : 0.0;
   if (found.bands.empty() || axes.constant())
     return found.bands.empty() ? std::nullopt : std::optional(found.bands.front());
   analysis::RotatingAxes finer(s.linear, probed, axes.harmonics() + more);
@@ -128,10 +135,11 @@ void warn_of_unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
   warn(s.job, std::move(d));
 }
 
-bool warn_of_band(FrequencyStep& s, const std::vector<double>& speeds) {
+/// counted_to: as of band_among().
+bool warn_of_band(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
   std::optional<analysis::InstabilityBand> band;
   try {
-    band = band_among(s, speeds);
+    band = band_among(s, speeds, counted_to);
   } catch (const Error& e) {
     warn_of_unknown_growth(s, speeds.back(), e);
   }
@@ -227,21 +235,26 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   return out;
 }
 
-bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
-  std::sort(speeds.begin(), speeds.end());
-  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
-  if (bends && s.turns_as_one() &&
-      (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model))) {
-    std::vector<double> backwards, forwards;
-    for (const double Omega : speeds)
-      if (Omega != 0.0) (Omega < 0.0 ? backwards : forwards).push_back(Omega);
-    bool grows = false;
-    for (const std::vector<double>& sense : {backwards, forwards})
-      grows = (!sense.empty() && warn_of_band(s, sense)) || grows;
-    return grows;
+namespace {
+
+/// At speeds of either sense; counted_to: as of band_among(), the least.
+bool warn_of_bands(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
+  std::vector<double> backwards, forwards;
+  for (const double Omega : speeds)
+    if (Omega != 0.0) (Omega < 0.0 ? backwards : forwards).push_back(Omega);
+  bool grows = false;
+  for (const std::vector<double>& sense : {backwards, forwards}) {
+    if (sense.empty()) continue;
+    double counted = 0.0;
+    grows = warn_of_band(s, sense, counted) || grows;
+    counted_to = std::min(counted_to, counted);
   }
-  Growth free_motions(s, motion);
+  return grows;
+}
+
+/// At speeds one by one; of_the_mean: over a revolution.
+bool warn_of_free_motions(FrequencyStep& s, const std::vector<double>& speeds, Growth& free_motions,
+                          bool of_the_mean) {
   for (const double Omega : speeds) {
     Diagnostic d;
     d.code = "W13";
@@ -249,9 +262,12 @@ bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
       const std::string growth = free_motions.at(Omega);
       if (growth.empty()) continue;
       d.message = fmt::format(
-          "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never "
+          "step '{}': the rotor{} is unstable at {:.6g} rpm ({}): the steady response is never "
           "reached there",
-          s.step.name, to_rpm(Omega), growth);
+          s.step.name,
+          of_the_mean ? fmt::format(", its {} the mean over a revolution,", what_turns(s.job.model))
+                      : "",
+          to_rpm(Omega), growth);
       d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
       const std::string moments = moments_along_shafts(s.job.model);
       if (!moments.empty()) d.hint += "; " + moments;
@@ -267,6 +283,21 @@ bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Moti
   s.summary()["growth not excluded above [Hz]"] = top;
   s.say_also(fmt::format("growth above {:.5g} Hz not excluded", top));
   return false;
+}
+
+}  // namespace
+
+bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
+  std::sort(speeds.begin(), speeds.end());
+  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
+  double counted_to = infinity;
+  const bool turns = bends && s.turns_as_one() &&
+                     (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model));
+  if (turns && warn_of_bands(s, speeds, counted_to)) return true;
+  // what turns joins slow motions alone: what bends faster grows as with the mean
+  Growth free_motions(s, turns ? analysis::Motion::lateral : motion, turns ? counted_to : 0.0);
+  return warn_of_free_motions(s, speeds, free_motions, turns);
 }
 
 /// rad: what is left out goes with the square of the tilt, 1 %.

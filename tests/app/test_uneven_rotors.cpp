@@ -453,6 +453,57 @@ TEST(UnevenRotors, TheirPeakAtTwiceTheSpeedMayHaveNoBound) {
   EXPECT_TRUE(d.says("at a multiple of the speed has no bound")) << d.log;
 }
 
+// Magnets may drive motions faster than those that are looked at: the same is said of a wheel whose inertia turns
+// as of a round one.
+TEST(UnevenRotors, GrowthThatIsNotExcludedIsSaid) {
+  const auto magnet = [](const std::string& place) {
+    return "[[bearing]]\nat = \"" + place + R"pid("
+type = "magnetic"
+current_stiffness = "300 N/A"
+bias_current = "5 A"
+gap = "0.5 mm"
+amplifier_bandwidth = "2 kHz"
+[[bearing.control]]
+type = "pid"
+p = "3e4 A/m"
+i = "2e5 A/(m.s)"
+d = "50 A.s/m"
+lag = "30 us"
+)pid";
+  };
+  for (const std::string across : {"0.5", "0.4"}) {
+    const DeckRun d(
+        "format = 1\n" + no_report +
+        "[model]\ngravity = \"0 m/s^2\"\n[model.mesh]\nmin_elements_per_section = 1\n" +
+        R"([shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 100, 60], ["b", 300, 80], ["c", 300, 80], ["d", 100, 60]]
+[[unbalance]]
+at = "b:end"
+amount = "100 g.mm"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+[[disk]]
+name = "disk"
+at = "b:end"
+mass = "60 kg"
+)" +
+        fmt::format(
+            "inertia = [\"0.8 kg.m^2\", \"0.5 kg.m^2\", \"{} kg.m^2\", \"0 kg.m^2\", \"0 kg.m^2\", "
+            "\"0 kg.m^2\"]\n",
+            across) +
+        magnet("a:end") + magnet("d:start") +
+        "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"3000 "
+        "rpm\"] }\n");
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_TRUE(d.says("growth above 4040 Hz not excluded")) << d.log;
+  }
+}
+
 // An asymmetric shaft on unequal supports has three bands of parametric instability, where the sum of two
 // frequencies is twice the speed: 1400 to 1476, 1579 to 1645 and 1754 to 1815 rpm by the Floquet multipliers
 // of its two equations of motion. No speed of a coarse list lies in the first and the last.
