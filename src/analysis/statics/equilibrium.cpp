@@ -518,19 +518,6 @@ void EquilibriumSolver::list_holds(const system::State& state, Equilibrium& e) {
   e.axial_holds = axial_holds_;
 }
 
-bool EquilibriumSolver::relaxed_from(const system::State& begin, double Omega, Equilibrium& out) {
-  const system::State repelling = out.state;
-  const VecX balance = r_;
-  system::State& s = out.state;
-  s = begin;
-  running_.relax(s.frames, Omega, s.q);
-  if (newton(Omega, s, out.iterations, Step::relaxed) == Outcome::converged && attracts(Omega, s))
-    return true;
-  s = repelling;
-  r_ = balance;
-  return false;
-}
-
 bool EquilibriumSolver::attracts(double Omega, const system::State& s) {
   running_.tangent(s.frames, Omega, s.q, matrices_);
   // a pad by itself; of two of them the tangent as a whole may say nothing
@@ -595,8 +582,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   }
   const bool found = o == Outcome::converged || load_in_steps(Omega, begin.t, out);
   // Among pads that balance themselves there are equilibria that repel beside those that attract.
-  const bool repels = found && sys.relaxes() && !attracts(Omega, s);
-  if (!found || (repels && !relaxed_from(begin, Omega, out))) {
+  if (!found || (sys.relaxes() && !attracts(Omega, s))) {
     out.drifted = drift_from(begin, Omega, found, out);
     if (!found && !out.drifted) return std::nullopt;
   }

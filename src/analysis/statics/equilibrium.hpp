@@ -107,9 +107,6 @@ class EquilibriumSolver {
   /// drift() from a state, then, where the state in out is an equilibrium (found), from beside that one; into
   /// out, when it ends in an equilibrium that attracts (else out is as it was).
   bool drift_from(const system::State& begin, double Omega, bool found, Equilibrium& out);
-  /// Newton's method from a state, with what elements balance themselves in balance at every trial; into
-  /// out, when it ends in an equilibrium that attracts (else out is as it was).
-  bool relaxed_from(const system::State& begin, double Omega, Equilibrium& out);
   /// No small displacement drives the state further away, as far as that can be told.
   bool attracts(double Omega, const system::State& s);
   /// Newton's method from here ends where steps of this size still lead; else s is as before.
