@@ -114,28 +114,37 @@ TEST(UnboundedResponse, NoPeakStandsAtTheEdgeOfABand) {
   }
 }
 
-// A speed without a periodic motion is a row without numbers, not the end of the step.
-TEST(UnboundedResponse, SpeedsWithoutAMotionLeaveTheOthersTheirRows) {
+namespace {
+
+std::string cracked_rotor(double loss, const std::string& speed) {
   const std::string bearing =
       "type = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = \"6e7 N/m\"\nkzz = \"4e7 N/m\"\ncyy = \"1e4 "
       "N.s/m\"\nczz = \"1e4 "
       "N.s/m\"\n";
-  const std::string deck =
-      "format = 1\n[output]\nreport = false\n[[shaft]]\nname = \"r\"\nmaterial = "
-      "\"steel\"\ncolumns = [\"name\", "
-      "\"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 500, 50], [\"b\", 100, 60], [\"c\", 600, "
-      "50]]\n[[disk]]\nname "
-      "= \"w\"\nat = \"b:end\"\nmass = \"40 kg\"\nIp = \"0.6 kg.m^2\"\nId = \"0.32 "
-      "kg.m^2\"\n[[bearing]]\nat = "
-      "\"a:start\"\n" +
-      bearing + "[[bearing]]\nat = \"c:end\"\n" + bearing +
-      "[[probe]]\nname = \"p\"\nat = \"b:start\"\n[[crack]]\nat = \"a:end - 60 mm\"\nto = \"a:end "
-      "- 20 "
-      "mm\"\nloss = 0.3\nbreathing = \"mayes\"\n[[unbalance]]\nat = \"w\"\namount = \"200 "
-      "g.mm\"\n[[step]]\nname "
-      "= \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"900 rpm\", \"2500 rpm\", "
-      "\"6000 rpm\"] }\n";
-  const DeckRun run(deck);
+  return "format = 1\n[output]\nreport = false\n[[shaft]]\nname = \"r\"\nmaterial = "
+         "\"steel\"\ncolumns = [\"name\", "
+         "\"length[mm]\", \"od[mm]\"]\nrows = [[\"a\", 500, 50], [\"b\", 100, 60], [\"c\", 600, "
+         "50]]\n[[disk]]\nname "
+         "= \"w\"\nat = \"b:end\"\nmass = \"40 kg\"\nIp = \"0.6 kg.m^2\"\nId = \"0.32 "
+         "kg.m^2\"\n[[bearing]]\nat = "
+         "\"a:start\"\n" +
+         bearing + "[[bearing]]\nat = \"c:end\"\n" + bearing +
+         "[[probe]]\nname = \"p\"\nat = \"b:start\"\n[[crack]]\nat = \"a:end - 60 mm\"\nto = "
+         "\"a:end "
+         "- 20 "
+         "mm\"\nloss = " +
+         fmt::format("{}", loss) +
+         "\nbreathing = \"mayes\"\n[[unbalance]]\nat = \"w\"\namount = \"200 "
+         "g.mm\"\n[[step]]\nname "
+         "= \"u\"\ntype = \"unbalance_response\"\nspeed = " +
+         speed + "\n";
+}
+
+}  // namespace
+
+// A speed without a periodic motion is a row without numbers, not the end of the step.
+TEST(UnboundedResponse, SpeedsWithoutAMotionLeaveTheOthersTheirRows) {
+  const DeckRun run(cracked_rotor(0.3, "{ values = [\"900 rpm\", \"2500 rpm\", \"6000 rpm\"] }"));
   ASSERT_EQ(run.exit, 0) << run.log;
   const Columns response = run.csv("u_response.csv");
   for (const double asked : {900.0, 2500.0, 6000.0}) {
@@ -145,6 +154,25 @@ TEST(UnboundedResponse, SpeedsWithoutAMotionLeaveTheOthersTheirRows) {
                         std::isfinite(row[response.column("p major [m]")]));
     EXPECT_TRUE(there) << asked << run.log;
   }
+}
+
+// The ends of the speeds without one are peaks, however far apart the points are: margins are held against them.
+TEST(UnboundedResponse, NoBoundIsWhereMotionsEnd) {
+  std::string deck =
+      cracked_rotor(0.1, "{ start = \"1800 rpm\", stop = \"2000 rpm\", points = 3 }");
+  const std::string along = "kxx = \"1e8 N/m\"\n";
+  deck.erase(deck.rfind(along), along.size());
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("no bound at 1891.7")) << run.log;
+  std::vector<double> ends;
+  const Columns peaks = run.csv("u_peaks.csv");
+  for (const auto& row : peaks.rows)
+    if (std::isnan(row[peaks.column("amplitude [m]")]))
+      ends.push_back(row[peaks.column("speed [rpm]")]);
+  ASSERT_GE(ends.size(), 2u) << run.log;
+  EXPECT_NEAR(ends.front(), 1891.76, 0.1);  // of the band that W13 names
+  EXPECT_NEAR(ends.back(), 1893.26, 0.1);
 }
 
 // The same under forces of a shaker: two wheels on a spring, twisted at the frequency that they have.

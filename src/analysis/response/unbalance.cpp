@@ -232,6 +232,24 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
     add_points(peak, coarse.front().Omega, coarse.back().Omega,
                coarse[i + 1].Omega - coarse[i - 1].Omega, extra);
   }
+  if (options_.refine_peaks) add_edges_of_no_motion(order, probe, coarse);
+}
+
+void UnbalanceSolver::add_edges_of_no_motion(std::size_t order, std::size_t probe,
+                                             const std::vector<SteadyPoint>& points) {
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    // one alone is none of a band: its iteration failed
+    if (points[i].found || points[i - 1].found == points[i + 1].found) continue;
+    ResponsePeak edge;
+    edge.order = order;
+    edge.probe = probe;
+    edge.amplitude = infinity;
+    edge.bounded = false;
+    edge.speed = edge.low = edge.high = edge.low_seen = edge.high_seen = points[i].Omega;
+    peaks_.push_back(edge);
+  }
+  std::stable_sort(peaks_.begin(), peaks_.end(),
+                   [](const ResponsePeak& a, const ResponsePeak& b) { return a.speed < b.speed; });
 }
 
 std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& speeds) {
@@ -319,7 +337,7 @@ void UnbalanceSolver::drop_unbounded(std::vector<SteadyPoint>& points) const {
   const auto drop = [&](const auto& peaks) {
     std::erase_if(points, [&](const SteadyPoint& x) {
       return std::any_of(peaks.begin(), peaks.end(), [&](const auto& p) {
-        return !p.bounded && std::abs(x.Omega - p.speed) < near * std::abs(p.speed);
+        return x.found && !p.bounded && std::abs(x.Omega - p.speed) < near * std::abs(p.speed);
       });
     });
   };
