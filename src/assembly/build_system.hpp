@@ -46,7 +46,6 @@ struct SupportCondition {
     double load = 0,
            capacity =
                0;  ///< N, of films and contacts; capacity of a film: at the believed eccentricity
-    std::string detail{};  ///< more of where it stands, for messages: "pad 4 ..."
   };
   std::size_t bearing = 0;  ///< of the model
   std::string name;
@@ -56,6 +55,8 @@ struct SupportCondition {
                           ///< load it is the Sommerfeld number
   /// What counts against the gap where it is not the distance from the middle, m; null: that.
   std::function<double(const NodeAt&)> reach{};
+  /// More of where it stands, for messages: "pad 4 ..."; null: there is no more.
+  std::function<std::string(const NodeAt&)> detail{};
 };
 
 /// The pads of a tilting-pad bearing.

@@ -272,11 +272,12 @@ class PadRing {
   Tipping tipping(const NodeAt& at) const {
     elements::LateralMotion m = journal(at);
     m.v.setZero();
-    const double farthest = SupportCondition::believed * law_.clearance / m.r.norm();
+    const double r = m.r.norm(), reach = SupportCondition::believed * law_.clearance;
+    const double farther = r > 0.0 ? std::max(reach / r - 1.0, 0.0) : 0.0;
     constexpr int looks = 12;
-    for (int look = 0; look <= looks; ++look) {
+    for (int look = 0; look <= (farther > 0.0 ? looks : 0); ++look) {
       elements::LateralMotion there = m;
-      there.r *= 1.0 + (std::max(farthest, 1.0) - 1.0) * look / looks;
+      there.r *= 1.0 + farther * look / looks;
       for (std::size_t k = 0; k < pads_.size(); ++k)
         if (!pads_[k].settled(there).allFinite())
           return {k + 1, there.r.dot(pads_[k].pivot) / given_[k].clearance, look == 0};
@@ -395,8 +396,17 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   std::vector<double> offsets;
   for (const auto& p : law.pads())
     offsets.push_back(p.offset);
-  condition.state = [ring, clearance = law.clearance, offsets,
-                     supplied = law.flow.supply_pressure > 0](const NodeAt& at) {
+  condition.detail = [ring, offsets, supplied = law.flow.supply_pressure > 0](const NodeAt& at) {
+    std::string out = describe_worst(ring->standing(at));
+    if (const auto tips = ring->tipping(at); tips.pad > 0)
+      out += fmt::format(
+          "; pad {} finds no balance {} (eccentricity {:.3f} towards its pivot, which stands at "
+          "{:.3g} of its arc) and turns until it touches{}",
+          tips.pad, tips.there ? "there" : "farther out", tips.eccentricity, offsets[tips.pad - 1],
+          supplied ? ", which the supply pressure at its edges does to a pad without load" : "");
+    return out;
+  };
+  condition.state = [ring, clearance = law.clearance](const NodeAt& at) {
     const std::vector<elements::PadStanding> now = ring->standing(at);
     Vec2 load = Vec2::Zero();
     for (const auto& p : now)
@@ -411,13 +421,6 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
       if (p.film < (1.0 - SupportCondition::believed) * s.gap)
         s.displacement = std::max(s.displacement, s.gap - p.film);
     s.load = load.norm();
-    s.detail = describe_worst(now);
-    if (const auto tips = ring->tipping(at); tips.pad > 0)
-      s.detail += fmt::format(
-          "; pad {} finds no balance {} (eccentricity {:.3f} towards its pivot, which stands at "
-          "{:.3g} of its arc) and turns until it touches{}",
-          tips.pad, tips.there ? "there" : "farther out", tips.eccentricity, offsets[tips.pad - 1],
-          supplied ? ", which the supply pressure at its edges does to a pad without load" : "");
     constexpr double near =
         0.8;  // of the gap: what it could carry is of interest, and found slowly
     if (s.displacement > near * s.gap)

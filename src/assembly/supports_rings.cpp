@@ -180,9 +180,12 @@ SupportCondition make_condition(const Assembly& a, const model::Bearing& b,
     s.gap = film(now).clearance;
     s.displacement = film(now).place.norm();
     s.load = film(now).force.norm();
-    s.detail = describe_film(*ring, now, film(now), at(ring->nodes()[0]).spin());
     s.capacity = ring->kernel().capacity(ring->states(at), {}, inner, SupportCondition::believed);
     return s;
+  };
+  out.detail = [ring, film](const NodeAt& at) {
+    const elements::RingStanding now = ring->standing(at);
+    return describe_film(*ring, now, film(now), at(ring->nodes()[0]).spin());
   };
   return out;
 }

@@ -21,12 +21,16 @@ class Conditions {
         workspace_(job.system().make_workspace()) {
     job.system().evaluate_nodes(workspace_, s.frames, s.t, s.q, s.v, s.a);
   }
-  SupportCondition::State of(const SupportCondition& c) const {
-    return c.state(
-        [this](Index n) -> const system::NodeState& { return workspace_.in_own_axes(n); });
+  SupportCondition::State of(const SupportCondition& c) const { return c.state(node()); }
+  /// After `before`; empty where there is no more to say.
+  std::string detail(const SupportCondition& c, const std::string& before) const {
+    return c.detail ? before + c.detail(node()) : std::string();
   }
 
  private:
+  assembly::NodeAt node() const {
+    return [this](Index n) -> const system::NodeState& { return workspace_.in_own_axes(n); };
+  }
   const Job& job_;
   system::Workspace workspace_;
 };
@@ -58,10 +62,9 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
     d.message += "; none either under 1/256 of the load";
     d.hint = hint;
     for (const SupportCondition& c : job.built.conditions) {
-      const SupportCondition::State s = Conditions(job, start.state).of(c);
-      if (s.film && d.where.line == 0) d.where = c.where;
-      if (!s.detail.empty())
-        d.message += fmt::format("; at the start of bearing '{}' {}", c.name, s.detail);
+      const Conditions now(job, start.state);
+      if (now.of(c).film && d.where.line == 0) d.where = c.where;
+      d.message += now.detail(c, fmt::format("; at the start of bearing '{}' ", c.name));
     }
     return Error(failed.exit(), std::move(d));
   }
@@ -89,7 +92,7 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
                              s.load, s.displacement / s.gap);
     if (s.capacity > 0)
       d.message += fmt::format(" (about {:.4g} N at {})", s.capacity, SupportCondition::believed);
-    if (!s.detail.empty()) d.message += "; " + s.detail;
+    d.message += now.detail(c, "; ");
     sep = ", ";
     if (d.where.line == 0) d.where = c.where;
   }
@@ -150,8 +153,8 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
     if (const SupportCondition::State x = now.of(c); x.film && x.displacement > (1 - near) * x.gap)
       out += fmt::format("; the journal of bearing '{}' is at the wall (eccentricity {:.6f})",
                          c.name, x.displacement / x.gap);
-    else if (x.film && !x.detail.empty())
-      out += fmt::format("; in bearing '{}' {}", c.name, x.detail);
+    else if (x.film)
+      out += now.detail(c, fmt::format("; in bearing '{}' ", c.name));
   return out;
 }
 
@@ -159,7 +162,7 @@ namespace {
 
 /// What a support beyond what it is for says; `at`: "at the start of step 'x'".
 Diagnostic beyond(const SupportCondition& c, const SupportCondition::State& s,
-                  const std::string& at) {
+                  const std::string& at, const std::string& detail) {
   Diagnostic d;
   d.severity = Diagnostic::Severity::warning;
   d.where = c.where;
@@ -191,7 +194,7 @@ Diagnostic beyond(const SupportCondition& c, const SupportCondition::State& s,
         "a larger gap, or a set point of the bearings that lifts the shaft, opens it; the run "
         "goes on with the contact closed";
   }
-  if (!s.detail.empty()) d.message += "; " + s.detail;
+  d.message += detail;
   return d;
 }
 
@@ -223,7 +226,8 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const std::strin
     const SupportCondition::State s = now.of(c);
     if (!(s.displacement > (s.film ? SupportCondition::believed * s.gap : s.gap))) continue;
     if (s.film && s.displacement > beyond_any_film * s.gap) throw no_film(c, s, step);
-    Diagnostic d = beyond(c, s, fmt::format("at {} of step '{}'", when, step.name));
+    Diagnostic d =
+        beyond(c, s, fmt::format("at {} of step '{}'", when, step.name), now.detail(c, "; "));
     job.report.warnings.push_back(d.message);
     io::Value& list = job.summary["warnings"];
     list.push(d.code + ": " + d.message);
