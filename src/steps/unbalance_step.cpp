@@ -51,9 +51,13 @@ void add_probe_figures(results::FrequencyStep& s, const UnbalanceResponse& r,
     for (const analysis::ResponsePeak& k : peaks)
       if (k.probe == p)
         marks.push_back({k.speed, k.speed * r.orders[k.order], r.orders[k.order], {}});
+    // what has no bound leaves nothing else to see on an even scale
+    const bool log_amplitude =
+        std::any_of(peaks.begin(), peaks.end(),
+                    [p](const analysis::ResponsePeak& k) { return k.probe == p && !k.bounded; });
     s.add_figure(plot::plot_bode(s.file(probes[p].name + "_bode"),
                                  probes[p].name + ": response to unbalance", curves, convention,
-                                 marks));
+                                 marks, log_amplitude));
     s.add_figure(plot::plot_polar(s.file(probes[p].name + "_polar"),
                                   probes[p].name + ": polar plot", curves, convention, marks));
   }
@@ -158,7 +162,8 @@ io::Table multiples_table(const UnbalanceResponse& r,
 }
 
 plot::Figure multiples_figure(const results::FrequencyStep& s, const UnbalanceResponse& r,
-                              const analysis::ResponseProbe& probe, std::size_t p, int multiples) {
+                              const analysis::ResponseProbe& probe, std::size_t p, int multiples,
+                              bool bounded) {
   double largest = 0;
   for (const SteadyPoint& x : r.points)
     for (std::size_t h = 1; h < x.multiple.size(); ++h)
@@ -166,8 +171,8 @@ plot::Figure multiples_figure(const results::FrequencyStep& s, const UnbalanceRe
   const plot::DisplayUnit unit = plot::length_unit(largest);
   plot::Axes axes;
   axes.x = plot::Axis("speed", "rpm");
-  axes.y = plot::Axis("major axis of the orbit, 0-peak", unit.name);
-  axes.y.include_zero = true;
+  axes.y = plot::Axis("major axis of the orbit, 0-peak", unit.name, !bounded);
+  axes.y.include_zero = bounded;
   for (int h = 1; h <= multiples; ++h) {
     plot::Series y;
     y.label = fmt::format("{}x", h);
@@ -227,7 +232,7 @@ std::string add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
       std::isfinite(twice.amplitude) ? twice.amplitude : nan;
   s.add_table("multiples", multiples_table(r, probes, multiples), false);
   for (std::size_t p = 0; p < probes.size(); ++p)
-    s.add_figure(multiples_figure(s, r, probes[p], p, multiples));
+    s.add_figure(multiples_figure(s, r, probes[p], p, multiples, bounded));
   double left_out = 0;
   for (const SteadyPoint& x : r.points)
     left_out = std::max(left_out, x.left_out);
@@ -715,10 +720,11 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
     const run::PhaseTimer timer(job, "critical speeds");
     // what turns unevenly has peaks beside the critical speeds of its mean, and the weight shakes it at
     // twice the speed
-    if (o.multiples > 0) refine_at_poles(s, o.speeds);
     const auto orders = s.linear.running().orders();
-    for (const double order : std::vector<double>(orders.begin(), orders.end()))
-      if (o.multiples == 0)
+    if (o.multiples > 0)
+      refine_at_poles(s, o.speeds);
+    else
+      for (const double order : std::vector<double>(orders.begin(), orders.end()))
         refine_at_criticals(s, analysis::Motion::lateral, {.lateral = true}, order, o.speeds);
     o.resolve = s.linear.running().running().frequency_dependent();
   }
