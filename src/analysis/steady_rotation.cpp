@@ -406,6 +406,7 @@ void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
     double x = h.law->at(running_.time).f;
     if (h.unknown % 6 == system::spin_phi && spinning_[at(i)]) {
       double& first = lead[at(system_.node(i).line)];
+      if (!running_.mean) x -= two_pi * f.turns[at(system_.node(i).line)];
       if (std::isnan(first)) {
         first = x;
         if (!running_.mean) turn_line(system_.node(i).line, x - q[h.unknown], q);

@@ -73,18 +73,30 @@ bool Job::goes_on_in_motion(const model::Step& step) const {
   });
 }
 
+double Job::angle_of_drive(const system::State& s, std::size_t line) const {
+  for (const auto& h : system().holds()) {
+    const Index node = h.unknown / 6;
+    if (h.law && h.unknown % 6 == system::spin_phi &&
+        system().node(node).line == static_cast<Index>(line))
+      return s.total_phi(node, static_cast<Index>(line));
+  }
+  return 0.0;
+}
+
 StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   if (!step.from.empty()) {
     StepState s = states.at(step.from);
-    const bool in_motion = goes_on_in_motion(step), turning = s.speed != 0.0;
+    const bool in_motion = goes_on_in_motion(step);
     if (speed) s.speed = *speed;
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
       const meshes::Line& line = mesh.lines[l];
       const assembly::LineSpin& law = built.spins[l];
-      // an equilibrium that turns has its lines at angle zero, a drive may begin elsewhere
-      const double turned =
-          in_time && !in_motion && turning && law.prescribed ? law.angle->at(s.state.t).f : 0.0;
+      // an equilibrium has its lines at angle zero, or where a drive of its step has them; another may begin
+      // elsewhere
+      const double turned = in_time && !in_motion && law.prescribed
+                                ? law.angle->at(s.state.t).f - angle_of_drive(s.state, l)
+                                : 0.0;
       for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
         s.state.q[6 * n + system::spin_phi] += turned;
         if (speed)

@@ -92,6 +92,8 @@ struct Job {
                                bool in_time = false) const;
 
  private:
+  /// Of a line where its drive holds it, rad; 0: nothing prescribes it.
+  double angle_of_drive(const system::State& s, std::size_t line) const;
   std::string key_;  ///< assembly::system_key of `built`
 };
 
