@@ -394,6 +394,7 @@ void UnbalanceSolver::find_peaks_of_multiple(std::size_t h, std::size_t probe,
     return p.multiple[k][probe].orbit().major;
   };
   std::vector<double> sizes;
+  sizes.reserve(points.size());
   for (const SteadyPoint& p : points)
     sizes.push_back(size(p, h));
   double largest = 0;
