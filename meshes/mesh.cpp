@@ -271,6 +271,45 @@ class LineMesher {
     return last;
   }
 
+  /// Places beside the cracks of a section that begins at `a`. The inertia of the element in which a crack
+  /// stands knows nothing of its kink; where the element is short that costs nothing: the error goes with
+  /// the square of its length.
+  std::vector<double> beside_cracks(const Section& s, double a,
+                                    const std::vector<double>& stations) const {
+    std::vector<double> out;
+    const double b = a + s.length;
+    for (const model::Crack& c : model_.cracks) {
+      const double here = c.at.s;
+      if (c.to || static_cast<Index>(c.at.shaft) != index_) continue;
+      if (here < a - tolerance_ || here > b + tolerance_) continue;
+      const double step = step_beside_crack(s, here - a);
+      for (const double place : {here - step, here + step}) {
+        // one that is nearly there already takes its part
+        const auto [from, to] = std::minmax(here, here + 1.5 * (place - here));
+        const auto taken = [here, from = from, to = to](double x) {
+          return x != here && x >= from && x <= to;
+        };
+        if (place > a && place < b && !taken(a) && !taken(b) &&
+            std::none_of(stations.begin(), stations.end(), taken))
+          out.push_back(place);
+      }
+    }
+    return out;
+  }
+
+  /// m; infinite where the section has no mass.
+  double step_beside_crack(const Section& s, double from_left) const {
+    constexpr double share_of_diameter = 0.05, least_share_of_shaft = 1e-3;
+    double diameter = s.od_l + (s.od_r - s.od_l) * from_left / s.length;
+    if (s.constants) {
+      if (!(s.constants->rhoA > 0)) return infinity;
+      diameter = 4.0 * std::sqrt(s.constants->EI / s.constants->EA);
+    } else if (s.material < model_.materials.size() && !(model_.materials[s.material].rho > 0)) {
+      return infinity;
+    }
+    return std::max(share_of_diameter * diameter, least_share_of_shaft * line_.length);
+  }
+
   std::size_t flexible(std::size_t k) {
     const Section& s = shaft_.sections[k];
     const double a = ends_[k], b = ends_[k + 1];
@@ -278,13 +317,16 @@ class LineMesher {
     std::vector<double> inside = shaft_.path.joints();
     for (const Attached* x : attached_)
       inside.push_back(x->where->s);
+    const std::vector<double> beside = beside_cracks(s, a, inside);
+    inside.insert(inside.end(), beside.begin(), beside.end());
     std::sort(inside.begin(), inside.end());
     for (const double cut : inside)
       if (cut > cuts.back() + tolerance_ && cut < b - tolerance_) cuts.push_back(cut);
     cuts.push_back(b);
+    const int least =
+        std::max({s.min_elements, model_.min_elements, 1}) + static_cast<int>(beside.size());
     const std::vector<int> n =
-        element_counts(cuts, model::longest_element(model_, shaft_, s, resolution_),
-                       std::max({s.min_elements, model_.min_elements, 1}));
+        element_counts(cuts, model::longest_element(model_, shaft_, s, resolution_), least);
     if (k == 0) end_ = {add_node(a), 0.0};
     const bool rigid_next = k + 1 < shaft_.sections.size() && shaft_.sections[k + 1].rigid;
     for (std::size_t c = 0; c < n.size(); ++c)

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -265,6 +266,51 @@ TEST(Cracks, TheMeanIsThatOfTheComplianceOnAnyMesh) {
       for (const char* beside : {"", "short"})
         EXPECT_NEAR(frequency(breathing, elements, beside) / exact, 1.0, 1e-4)
             << breathing << elements << beside;
+  }
+}
+
+// The element in which a crack stands carries its inertia without the kink. It is short, so that the mesh
+// around it is of no account: what 5 elements a section give is what 60 give.
+TEST(Cracks, TheInertiaBesideAKinkIsConvergedOnAnyMesh) {
+  const auto frequencies = [](const char* od, const char* depth, int elements) {
+    const DeckRun r(fmt::format(R"(format = 1
+[output]
+report = false
+[shaft]
+name = "R"
+material = "steel"
+[[shaft.section]]
+length = "1 m"
+od = "{} mm"
+min_elements = {}
+[[crack]]
+at = "0.45 m"
+depth = "{} mm"
+breathing = "open"
+[[bearing]]
+at = "0 m"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "1 m"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+name = "m"
+type = "modal"
+speed = "0 rpm"
+motion = "lateral"
+modes = 2
+)",
+                                od, elements, depth));
+    EXPECT_EQ(r.exit, 0) << r.log;
+    const Columns modes = r.csv("m_modes.csv");
+    return std::array{modes.rows.at(0).at(4), modes.rows.at(1).at(4)};
+  };
+  for (const auto& [od, depth] : {std::pair{"50", "20"}, std::pair{"200", "80"}}) {
+    const auto coarse = frequencies(od, depth, 5), fine = frequencies(od, depth, 60);
+    for (const std::size_t k : {0u, 1u})
+      EXPECT_NEAR(coarse[k] / fine[k], 1.0, 2e-4) << od << " " << k;
   }
 }
 
