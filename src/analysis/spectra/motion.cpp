@@ -11,6 +11,9 @@ namespace {
 /// Of the stiffness an unknown has by itself, the part left when all others give way: below this it
 /// is rounding. The pivot of a chain that nothing holds ends at 1e-16 to 1e-13 of it.
 constexpr double unresisted = 1e-11;
+/// Of a spin: what resists it so little (a cracked or flat rotor at rest that would roll under its weight)
+/// is slow beside bending, and its inertia, which is left out, holds it.
+constexpr double slow_spin = 1e-5;
 
 void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> out_of,
                   la::BlockMatrix<6>& out) {
@@ -107,10 +110,14 @@ void MotionReduction::restrain(Index unknown) {
   springs_.push_back(spring);
 }
 
+double MotionReduction::resisted(Index unknown) const {
+  return kind_of_unknown(system_, unknown) == Motion::torsional ? slow_spin : unresisted;
+}
+
 /// The unknown that others hold least, or -1 when all are held. After a factorisation.
 Index MotionReduction::softest_unknown() const {
   Index softest = -1;
-  double most = 1.0 / unresisted;
+  double most = 1.0;
   for (Index i = 0; i < system_.nodes(); ++i) {
     const auto flags = std::span(follows_).subspan(at(6 * i), 6);
     if (std::find(flags.begin(), flags.end(), 1) == flags.end()) continue;
@@ -118,7 +125,7 @@ Index MotionReduction::softest_unknown() const {
     const auto stiffness = reduced_.K.block(reduced_.K.pattern().diagonal(i));
     for (Index c = 0; c < 6; ++c) {
       if (!flags[at(c)]) continue;
-      const double ratio = std::abs(flexibility(c, c) * stiffness(c, c));
+      const double ratio = std::abs(flexibility(c, c) * stiffness(c, c)) * resisted(6 * i + c);
       if (ratio > most) {
         most = ratio;
         softest = 6 * i + c;
@@ -134,7 +141,9 @@ bool MotionReduction::restraints_still_free() {
     scratch_.setZero();
     scratch_[restraints_[i]] = springs_[i];
     followers_->solve(scratch_);
-    if (std::abs(scratch_[restraints_[i]] - 1.0) > 1e-9) return false;
+    constexpr double rounding = 1e-9;
+    const double weak = 2.0 * resisted(restraints_[i]);
+    if (std::abs(scratch_[restraints_[i]] - 1.0) > std::max(rounding, weak)) return false;
   }
   return true;
 }

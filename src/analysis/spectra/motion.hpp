@@ -9,7 +9,8 @@
 // and torsional inertia, of relative size (lateral/axial or torsional frequency)^2 times the square
 // of the coupling. A motion that nothing resists (a shaft free to move along its axis, the free
 // spin) is restrained by a spring at one unknown: what the rest of the model feels of it is zero,
-// and so is the force in the spring.
+// and so is the force in the spring. A spin that next to nothing resists is held so: a rotor at rest
+// that is not round would roll under its weight, slowly, and does not while it vibrates.
 //
 // Torsional and axial motion hold the rest: bending is slow beside them and held by its inertia,
 // not by its stiffness.
@@ -60,6 +61,8 @@ class MotionReduction {
   Index softest_unknown() const;
   void restrain(Index unknown);
   double& own_stiffness(Index unknown);
+  /// Part of the stiffness of an unknown below which others do not hold it.
+  double resisted(Index unknown) const;
 
   const system::System& system_;
   Motion motion_;
