@@ -78,6 +78,24 @@ TEST_F(Sundials, IdaPrescribedMotionBreakpointsAndInterpolation) {
   EXPECT_TRUE(hit);
 }
 
+TEST_F(Sundials, IdaEndsAStepWhereItIsTold) {
+  auto p = oscillator(two_pi);
+  Options o;
+  o.tolerance = 1e-6;
+  auto integrator = make_integrator("ida", p, o);
+  integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
+  while (integrator->time() < 0.2)
+    ASSERT_TRUE(integrator->advance().ok());
+  const StepReport step = integrator->advance();
+  const double t = step.t0 + 0.3 * (step.t1 - step.t0);
+  VecX q(1), v(1), a(1);
+  integrator->interpolate(t, q, v, a);
+  ASSERT_TRUE(integrator->shorten_to(t).ok());
+  EXPECT_EQ(integrator->q()[0], q[0]);
+  EXPECT_EQ(integrator->v()[0], v[0]);
+  EXPECT_NEAR(integrator->v()[0], -two_pi * std::sin(two_pi * t), 1e-4);
+}
+
 TEST_F(Sundials, IdaMasslessUnknowns) {
   // as in the order tests: mass, first-order joint, algebraic follower
   MatX M = MatX::Zero(3, 3), C = M, K = M;

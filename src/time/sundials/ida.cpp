@@ -465,7 +465,11 @@ StepReport Ida::shorten_to(double t) {
   // IDA cannot step back: its solution at t is that of its interpolant, from which it starts anew.
   const double h_before = t_ - t0_, wanted = h_next_;
   t_stop_eval_ = infinity;
-  interpolate(t, q_, v_, a_);
+  // not into what it is computed from
+  interpolate(t, qs_, vs_, as_);
+  q_ = qs_;
+  v_ = vs_;
+  a_ = as_;
   t_ = t;
   initial_acceleration();
   scale_.observe(q_);
