@@ -285,9 +285,9 @@ class LineMesher {
       const double step = step_beside_crack(s, here - a);
       for (const double place : {here - step, here + step}) {
         // one that is nearly there already takes its part
-        const auto [from, to] = std::minmax(here, here + 1.5 * (place - here));
-        const auto taken = [here, from = from, to = to](double x) {
-          return x != here && x >= from && x <= to;
+        const double farther = here + 1.5 * (place - here);
+        const auto taken = [here, farther](double x) {
+          return x != here && (x - here) * (x - farther) <= 0.0;
         };
         if (place > a && place < b && !taken(a) && !taken(b) &&
             std::none_of(stations.begin(), stations.end(), taken))
