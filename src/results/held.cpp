@@ -18,8 +18,6 @@ const char* left_out_motion(const model::StepLaw& law) {
         if constexpr (std::is_same_v<T, model::TorsionalStep> ||
                       std::is_same_v<T, model::ApiTorsionalStep>)
           motion = model::MotionKind::torsional;
-        else if constexpr (std::is_same_v<T, model::CriticalMapStep>)
-          motion = model::MotionKind::lateral;
         else if constexpr (requires { s.motion; })
           motion = s.motion;
         switch (motion) {

@@ -35,22 +35,22 @@ class Growth {
         judged_(judged),
         solver_(s.linear, options()),
         mesh_(s) {}
-  /// What grows at a speed, or "".
-  std::string at(double Omega) {
+  /// What grows at a speed.
+  FreeGrowth at(double Omega) {
     const std::optional<analysis::WhirlMode> mode = fastest(solver_, Omega);
     if (!mode) {
       const analysis::SpectrumCertificate& known = solver_.certificate();
       if (!known.stability_certain()) known_to_ = std::min(known_to_, known.list.radius);
       return {};
     }
-    if (is_resolved(*mode, Omega)) return text_of(*mode);
+    if (is_resolved(*mode, Omega)) return growth_of(*mode);
     // What elements as long as its waves say of a motion is no property of the rotor.
     if (!refined_) {
       refined_.emplace(step_);
       on_refined_.emplace(refined_->linear(), options());
     }
     const std::optional<analysis::WhirlMode> refined = fastest(*on_refined_, Omega);
-    if (refined) return text_of(*refined);
+    if (refined) return growth_of(*refined);
     known_to_ = std::min(known_to_, mode->frequency);
     return {};
   }
@@ -79,9 +79,10 @@ class Growth {
     constexpr double coarse = 0.05;  // of the frequency
     return !mode.oscillates() || !(mesh_.of(mode, Omega, "") > coarse);
   }
-  static std::string text_of(const analysis::WhirlMode& mode) {
-    return fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(mode.kind),
-                       to_hz(mode.frequency), mode.lambda.real());
+  static FreeGrowth growth_of(const analysis::WhirlMode& mode) {
+    return {mode.lambda.real(),
+            fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(mode.kind),
+                        to_hz(mode.frequency), mode.lambda.real())};
   }
 
   FrequencyStep& step_;
@@ -118,7 +119,8 @@ std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
   analysis::RotatingAxes finer(s.linear, probed, axes.harmonics() + more);
   for (const analysis::InstabilityBand& band : found.bands) {
     const double nothing = analysis::unnoticed_share(finer) * std::abs(finer.speed(band.speed));
-    const double growth = analysis::largest_growth(finer, o.sense * band.speed, modes);
+    const double growth =
+        analysis::largest_growth(finer, o.sense * band.speed, o.speeds.back(), modes);
     if (growth > std::max(nothing, 0.5 * band.growth)) return band;
   }
   return std::nullopt;
@@ -136,14 +138,14 @@ void warn_of_unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
 }
 
 /// counted_to: as of band_among().
-bool warn_of_band(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
+FreeGrowth growth_in_band(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
   std::optional<analysis::InstabilityBand> band;
   try {
     band = band_among(s, speeds, counted_to);
   } catch (const Error& e) {
     warn_of_unknown_growth(s, speeds.back(), e);
   }
-  if (!band) return false;
+  if (!band) return {};
   const double sense = speeds.front() < 0.0 ? -1.0 : 1.0;
   const auto edge = [sense](double Omega, const char* beyond, double last) {
     return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(last))
@@ -151,20 +153,14 @@ bool warn_of_band(FrequencyStep& s, const std::vector<double>& speeds, double& c
   };
   const auto [least, most] = std::minmax_element(
       speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  Diagnostic d;
-  d.code = "W13";
-  d.message = fmt::format(
-      "step '{}': the rotor, whose {} turns with it, is unstable from {} to {} rpm "
-      "({}): the steady response is never reached there",
-      s.step.name, what_turns(s.job.model), edge(band->low, "below", *least),
-      edge(band->high, "above", *most),
-      band->frequency > 1e-6 * band->speed
-          ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
-                        to_rpm(sense * band->speed))
-          : "it bends out at its own speed");
-  d.hint = "a stability step finds the bands, a transient step what the rotor does in them";
-  warn(s.job, std::move(d));
-  return true;
+  return {band->growth,
+          fmt::format("the rotor, whose {} turns with it, is unstable from {} to {} rpm ({})",
+                      what_turns(s.job.model), edge(band->low, "below", *least),
+                      edge(band->high, "above", *most),
+                      band->frequency > 1e-6 * band->speed
+                          ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
+                                        to_rpm(sense * band->speed))
+                          : "it bends out at its own speed")};
 }
 
 }  // namespace
@@ -218,13 +214,9 @@ std::vector<std::vector<double>> rows_of_tables(const model::Model& m) {
 
 }  // namespace
 
-std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds) {
-  WHIRL_EXPECTS(!speeds.empty());
+std::vector<double> table_speeds_between(const run::Job& job, double first, double last) {
   constexpr std::size_t few = 16;
-  const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
-  const double first = *least, last = *most;
-  std::vector<double> out{first, 0.5 * (first + last), last};
-  if (speeds.size() <= few) out.insert(out.end(), speeds.begin(), speeds.end());
+  std::vector<double> out;
   for (std::vector<double> rows : rows_of_tables(job.model)) {
     std::erase_if(rows, [&](double row) { return !(row > first && row < last); });
     const std::size_t every = (rows.size() + few - 1) / few;
@@ -235,69 +227,94 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   return out;
 }
 
+std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds) {
+  WHIRL_EXPECTS(!speeds.empty());
+  constexpr std::size_t few = 16;
+  const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
+  const double first = *least, last = *most;
+  std::vector<double> out{first, 0.5 * (first + last), last};
+  if (speeds.size() <= few) out.insert(out.end(), speeds.begin(), speeds.end());
+  const std::vector<double> rows = table_speeds_between(job, first, last);
+  out.insert(out.end(), rows.begin(), rows.end());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 namespace {
 
 /// At speeds of either sense; counted_to: as of band_among(), the least.
-bool warn_of_bands(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
+FreeGrowth growth_in_bands(FrequencyStep& s, const std::vector<double>& speeds,
+                           double& counted_to) {
   std::vector<double> backwards, forwards;
   for (const double Omega : speeds)
     if (Omega != 0.0) (Omega < 0.0 ? backwards : forwards).push_back(Omega);
-  bool grows = false;
+  FreeGrowth all;
   for (const std::vector<double>& sense : {backwards, forwards}) {
     if (sense.empty()) continue;
     double counted = 0.0;
-    grows = warn_of_band(s, sense, counted) || grows;
+    const FreeGrowth found = growth_in_band(s, sense, counted);
+    if (!found.text.empty()) all.text += (all.text.empty() ? "" : "; ") + found.text;
+    all.rate = std::max(all.rate, found.rate);
     counted_to = std::min(counted_to, counted);
   }
-  return grows;
+  return all;
 }
 
 /// At speeds one by one; of_the_mean: over a revolution.
-bool warn_of_free_motions(FrequencyStep& s, const std::vector<double>& speeds, Growth& free_motions,
-                          bool of_the_mean) {
+FreeGrowth growth_at_speeds(FrequencyStep& s, const std::vector<double>& speeds,
+                            Growth& free_motions, bool of_the_mean) {
   for (const double Omega : speeds) {
-    Diagnostic d;
-    d.code = "W13";
     try {
-      const std::string growth = free_motions.at(Omega);
-      if (growth.empty()) continue;
-      d.message = fmt::format(
-          "step '{}': the rotor{} is unstable at {:.6g} rpm ({}): the steady response is never "
-          "reached there",
-          s.step.name,
+      FreeGrowth growth = free_motions.at(Omega);
+      if (growth.text.empty()) continue;
+      growth.text = fmt::format(
+          "the rotor{} is unstable at {:.6g} rpm ({})",
           of_the_mean ? fmt::format(", its {} the mean over a revolution,", what_turns(s.job.model))
                       : "",
-          to_rpm(Omega), growth);
-      d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
-      const std::string moments = moments_along_shafts(s.job.model);
-      if (!moments.empty()) d.hint += "; " + moments;
-      warn(s.job, std::move(d));
-      return true;
+          to_rpm(Omega), growth.text);
+      return growth;
     } catch (const Error& e) {
       warn_of_unknown_growth(s, Omega, e);
     }
-    return false;
+    return {};
   }
-  if (free_motions.known_to() == infinity) return false;
+  if (free_motions.known_to() == infinity) return {};
   const double top = to_hz(free_motions.known_to());
   s.summary()["growth not excluded above [Hz]"] = top;
   s.say_also(fmt::format("growth above {:.5g} Hz not excluded", top));
-  return false;
+  return {};
 }
 
 }  // namespace
 
-bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
+FreeGrowth find_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
   const bool bends = motion == analysis::Motion::all || motion == analysis::Motion::lateral;
   double counted_to = infinity;
   const bool turns = bends && s.turns_as_one() &&
                      (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model));
-  if (turns && warn_of_bands(s, speeds, counted_to)) return true;
+  if (turns) {
+    FreeGrowth bands = growth_in_bands(s, speeds, counted_to);
+    if (!bands.text.empty()) return bands;
+  }
   // what turns joins slow motions alone: what bends faster grows as with the mean
   Growth free_motions(s, turns ? analysis::Motion::lateral : motion, turns ? counted_to : 0.0);
-  return warn_of_free_motions(s, speeds, free_motions, turns);
+  return growth_at_speeds(s, speeds, free_motions, turns);
+}
+
+bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {
+  const std::string growth = find_growth(s, std::move(speeds), motion).text;
+  if (growth.empty()) return false;
+  Diagnostic d;
+  d.code = "W13";
+  d.message =
+      fmt::format("step '{}': {}: the steady response is never reached there", s.step.name, growth);
+  d.hint = "a stability step finds where that begins, a transient step what the rotor does there";
+  const std::string moments = moments_along_shafts(s.job.model);
+  if (!moments.empty()) d.hint += "; " + moments;
+  warn(s.job, std::move(d));
+  return true;
 }
 
 /// rad: what is left out goes with the square of the tilt, 1 %.

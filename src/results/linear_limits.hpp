@@ -104,13 +104,22 @@ void warn_of_coarse_tables(run::Job& job, const std::string& step,
 /// W14: an equilibrium at speed is that of the mean stiffness of a cracked shaft over a revolution.
 void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 
-/// W13: at one of these speeds (reference, rad/s) a free motion grows, and the steady response there
-/// is never reached. Whether one does, as far as is known.
+/// A free motion that grows.
+struct FreeGrowth {
+  double rate = 0;   ///< 1/s; 0: nothing grows, as far as is known
+  std::string text;  ///< "the rotor is unstable at 5000 rpm (..)"
+};
+/// At one of these speeds (reference, rad/s), the first found; what is not known is said by the step.
+FreeGrowth find_growth(FrequencyStep& s, std::vector<double> speeds,
+                       analysis::Motion motion = analysis::Motion::all);
+/// W13: where one does the steady response is never reached. Whether one does.
 bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds,
                     analysis::Motion motion = analysis::Motion::all);
+/// Reference speeds between two, ascending, at which what is given in a table has a say of its own: the rows of
+/// tables of supports, and places between those of torques; of many a few, evenly.
+std::vector<double> table_speeds_between(const run::Job& job, double first, double last);
 /// Speeds within those of a response, ascending, at which free motions are looked at: both ends and the
-/// middle; all of them where a deck lists a few; the rows of tables of supports, between which coefficients have
-/// no say of their own, and between those of torques (of many a few, evenly).
+/// middle; all of them where a deck lists a few; table_speeds_between() them.
 std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<double>& speeds);
 
 /// Where motions grow: loads with a moment along a shaft, which can be the cause. "" without one.

@@ -7,12 +7,14 @@
 #include <meshes/mass_properties.hpp>
 #include <results/compliance.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <run/progress.hpp>
 #include <steps/api_criticals.hpp>
 #include <steps/api_models.hpp>
 #include <steps/api_stability.hpp>
 #include <steps/step_kinds.hpp>
 #include <steps/undamped_forward.hpp>
+#include <steps/vibration_zones.hpp>
 #include <core/text.hpp>
 
 #include <fmt/format.h>
@@ -92,6 +94,8 @@ class SetReport {
   /// The least stable mode of the machine as given, and the figure that shows it.
   std::pair<WhirlingMode, std::string> stability_as_given();
   void judge_stability();
+  /// Levels 1 and 2 look at the highest speed alone.
+  void judge_growth();
   std::string bode_of(const model::Step& of, const std::string& probe) const;
   void mark_speeds(plot::Figure& f, double limit) const;
 
@@ -417,7 +421,7 @@ double SetReport::add_vibration(const PlacedMode& mode, const model::Step& of,
     if (x.Omega < law_.operating[0] * (1 - 1e-12) || x.Omega > law_.operating[1] * (1 + 1e-12))
       continue;
     for (std::size_t p = 0; p < shown; ++p)
-      if (const double pp = 2 * x.probe[order_][p].orbit().major; pp > largest) {
+      if (const double pp = peak_to_peak(x, p); pp > largest) {
         largest = pp;
         at = x.Omega;
         probe = p;
@@ -457,7 +461,7 @@ void SetReport::add_clearances(const PlacedMode& mode, const model::Step& of,
     line.label = c.name;
     double most = 0, speed = 0;
     for (const analysis::SteadyPoint& x : r.response.points) {
-      const double pp = 2 * x.probe[order_][first + k].orbit().major;
+      const double pp = peak_to_peak(x, first + k);
       line.x.push_back(to_rpm(x.Omega));
       line.y.push_back(100 * scale * pp / c.diametral);
       if (x.Omega <= law_.trip * (1 + 1e-12) && pp > most) {
@@ -580,6 +584,26 @@ void SetReport::judge_stability() {
   close(level.job(), "stability, level 1");
 }
 
+void SetReport::judge_growth() {
+  const model::Model m = balanced(machine_.model);
+  model::ModalStep law;
+  law.speed = law_.operating[1];
+  const model::Step s = part("operation", law);
+  run::Job sub(m, job_);
+  sub.build_for(s);
+  results::FrequencyStep frequency(sub, s, "free motions in operation", "free motions",
+                                   law_.operating[1]);
+  const std::vector<double> speeds =
+      results::speeds_to_judge(sub, {law_.operating[0], law_.operating[1]});
+  const results::FreeGrowth grows = results::find_growth(frequency, speeds);
+  Check c = results::compare("growth in operation", grows.rate, "1/s", Check::Rule::at_most, 0.0);
+  c.remark = grows.text;
+  add(std::move(c),
+      fmt::format("{} speeds, {:.5g} to {:.5g} rpm", speeds.size(), to_rpm(law_.operating[0]),
+                  to_rpm(law_.operating[1])),
+      "", "");
+}
+
 void SetReport::execute() {
   weigh();
   draw_map();
@@ -593,6 +617,7 @@ void SetReport::execute() {
   }
   judge_criticals();
   judge_stability();
+  judge_growth();
 }
 
 void add_head(run::Job& job, const model::Step& step, const model::ApiLateralStep& law,

@@ -163,6 +163,7 @@ class HarmonicRun {
   /// empty where all stand at one speed.
   void solve_points(std::size_t first, std::size_t last,
                     std::span<const analysis::Equilibrium> equilibria);
+  void warn_of_left_out();
   void find_largest();
   double largest_of(std::size_t probe) const;
   double size_of(const FrequencyPoint& x, std::size_t probe) const {
@@ -692,7 +693,36 @@ void HarmonicRun::finish() {
                   displayed(endless ? unbounded->at : largest_at_), asynchronous_ ? "Hz" : "rpm"));
 }
 
+/// What a step of some motions leaves out of its forces: W02.
+void HarmonicRun::warn_of_left_out() {
+  if (law_.motion == model::MotionKind::all) return;
+  std::string names;
+  for (const model::HarmonicForce& f : law_.forces) {
+    const Driven d = driven_by(s_, {f});
+    std::string parts;
+    const auto drop = [&](bool is_driven, model::MotionKind by, const char* what) {
+      if (is_driven && law_.motion != by)
+        parts += (parts.empty() ? "" : " and ") + std::string(what);
+    };
+    drop(d.lateral, model::MotionKind::lateral, "what acts across the shaft");
+    drop(d.torsional, model::MotionKind::torsional, "the moment about its axis");
+    drop(d.axial, model::MotionKind::axial, "the force along its axis");
+    if (!parts.empty())
+      names += fmt::format("{}of {} {}", names.empty() ? "" : "; ",
+                           f.name.empty() ? "a force" : "force '" + f.name + "'", parts);
+  }
+  if (names.empty()) return;
+  Diagnostic d;
+  d.code = "W02";
+  d.where = s_.step.where;
+  d.message =
+      fmt::format("step '{}' leaves out, with the motion they belong to: {}", s_.step.name, names);
+  d.hint = "motion = \"all\" takes them in";
+  results::warn(job_, std::move(d));
+}
+
 void HarmonicRun::execute() {
+  warn_of_left_out();
   refine_grid();
   solve_grid();
   find_largest();

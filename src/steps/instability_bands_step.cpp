@@ -73,8 +73,10 @@ Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep
   constexpr Index more = 2;
   analysis::RotatingAxes finer(s.linear, sense * r.speeds.back(), axes.harmonics() + more);
   for (const double Omega : telling_speeds(r)) {
-    const double own = analysis::largest_growth(axes, sense * Omega, law.modes),
-                 other = analysis::largest_growth(finer, sense * Omega, law.modes);
+    const auto growth = [&](analysis::RotatingAxes& a) {
+      return analysis::largest_growth(a, sense * Omega, r.speeds.back(), law.modes);
+    };
+    const double own = growth(axes), other = growth(finer);
     ++t.speeds;
     t.change = std::max(t.change, std::abs(own - other));
   }

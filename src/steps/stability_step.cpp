@@ -316,12 +316,27 @@ std::string with_passing_parts(results::FrequencyStep& s, const std::string& lin
   return grows + "; " + of_the_mean;
 }
 
+/// What a table says at a row of its own no speed beside it tells. Two rows or speeds nearer than that are one.
+std::vector<double> with_table_speeds(const run::Job& job, std::vector<double> speeds) {
+  const bool ascends = speeds.front() <= speeds.back();
+  const double least = std::min(speeds.front(), speeds.back());
+  const double most = std::max(speeds.front(), speeds.back());
+  const double close = 1e-6 * std::max(std::abs(least), std::abs(most));
+  for (const double row : results::table_speeds_between(job, least, most))
+    if (std::none_of(speeds.begin(), speeds.end(),
+                     [&](double x) { return std::abs(x - row) <= close; }))
+      speeds.push_back(row);
+  std::sort(speeds.begin(), speeds.end());
+  if (!ascends) std::reverse(speeds.begin(), speeds.end());
+  return speeds;
+}
+
 }  // namespace
 
 void run_stability_step(run::Job& job, const model::Step& step, const model::StabilityStep& law) {
   if (results::is_judged_in_turning_axes(job.model)) return run_instability_bands(job, step, law);
   analysis::StabilityOptions o;
-  o.speeds = results::speeds_of(law.speed);
+  o.speeds = with_table_speeds(job, results::speeds_of(law.speed));
   const std::vector<double>& speeds = o.speeds;
   results::FrequencyStep s(job, step, "stability", "stability",
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));

@@ -123,7 +123,8 @@ bool is_within(double Omega, const std::array<double, 2>& speeds) {
   return turns >= speeds[0] * (1 - rounding) && turns <= speeds[1] * (1 + rounding);
 }
 
-/// Of all frequencies together, as if their largest fell on one instant.
+}  // namespace
+
 double peak_to_peak(const SteadyPoint& x, std::size_t probe) {
   double amplitude = 0;
   for (const auto& order : x.probe)
@@ -132,8 +133,6 @@ double peak_to_peak(const SteadyPoint& x, std::size_t probe) {
     amplitude += x.multiple[h][probe].orbit().major;
   return 2 * amplitude;
 }
-
-}  // namespace
 
 void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
                const std::vector<analysis::ResponseProbe>& probes,

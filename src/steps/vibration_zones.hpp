@@ -7,6 +7,9 @@
 
 namespace whirl::steps {
 
+/// Major axis, m, of all frequencies together, as if their largest fell on one instant.
+double peak_to_peak(const analysis::SteadyPoint& x, std::size_t probe);
+
 /// Zone of every probe where it comes nearest to the borders, over the operating speeds: a table, and
 /// colours in the figures of the probes, which stand in the section already. r: with the peaks within
 /// the operating speeds among its points; where a peak has no bound there, the zone is D.

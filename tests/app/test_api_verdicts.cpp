@@ -1,6 +1,7 @@
 // What an API report passes: nothing that grows, no critical speed that its unbalances do not drive, no
 // torsional mode that is not among those asked for.
 #include "deck_run.hpp"
+#include "flat_rotor.hpp"
 
 #include <fmt/format.h>
 
@@ -304,4 +305,84 @@ points = 31
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("api_modes: 2 modes")) << d.log;
   EXPECT_TRUE(d.says("mode 2, P, peak at")) << d.log;
+}
+
+// A seal that drives whirl at 5000 rpm alone (numpy: + 55.8 1/s at 54.3 Hz): levels 1 and 2 look at the highest
+// speed, 6400 rpm, and pass.
+TEST(ApiVerdicts, GrowthWithinTheOperatingSpeedsFails) {
+  const DeckRun r(R"(format = 1
+[output]
+report = false
+[[shaft]]
+name = "r"
+[[shaft.section]]
+name = "b"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "d"
+at = "b:mid"
+mass = "50 kg"
+Ip = "2 kg.m^2"
+Id = "4 kg.m^2"
+[[bearing]]
+name = "A"
+at = "b:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+cyy = "5000 N.s/m"
+czz = "5000 N.s/m"
+[[bearing]]
+name = "B"
+at = "b:end"
+type = "linear"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+cyy = "5000 N.s/m"
+czz = "5000 N.s/m"
+[[bearing]]
+name = "seal"
+at = "b:mid"
+type = "table"
+interpolation = "linear"
+columns = ["speed[rpm]", "kyy[N/m]", "kzz[N/m]", "kyz[N/m]", "kzy[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
+rows = [[100, 1e6, 1e6, 4e5, -4e5, 2000, 2000], [4000, 1e6, 1e6, 4e5, -4e5, 2000, 2000],
+        [5000, 1e6, 1e6, 6e6, -6e6, 2000, 2000], [6000, 1e6, 1e6, 6e5, -6e5, 2000, 2000],
+        [9000, 1e6, 1e6, 6e5, -6e5, 2000, 2000]]
+[[probe]]
+name = "p"
+at = "b:start"
+)" + api("\"4500 rpm\", \"6400 rpm\"",
+         "bearings = [\"A\", \"B\"]\nseals = [\"seal\"]\npoints = 31\n"));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "level 2: log decrement"), "passed");
+  EXPECT_EQ(result_of(r, "growth in operation"), "FAILED");
+  EXPECT_TRUE(r.says("is unstable at 5000 rpm (lateral motion at 54.3")) << r.log;
+}
+
+// By Floquet's exponents of a model of its own: + 9.7 1/s at 7000 rpm. The mean stiffness has no growth.
+TEST(ApiVerdicts, AnAsymmetricRotorThatGrowsFails) {
+  const DeckRun r(
+      whirl::test::flat_rotor(2, 1, 60,
+                              api("\"6900 rpm\", \"7150 rpm\"",
+                                  "points = 21\nresponse_speed = [\"3500 rpm\", \"9400 rpm\"]\n")));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "log decrement"), "passed");
+  EXPECT_EQ(result_of(r, "growth in operation"), "FAILED");
+}
+
+// The weight shakes a flat rotor at twice its speed: 7.94 mm at its weight critical speed, 1117 rpm, where once
+// per turn it moves by micrometres.
+TEST(ApiVerdicts, VibrationAtTwiceTheSpeedCounts) {
+  const DeckRun r(
+      whirl::test::flat_rotor(4, 2, 2000, api("\"1050 rpm\", \"1180 rpm\"", "points = 21\n")));
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_EQ(result_of(r, "vibration at probes"), "FAILED");
+  const whirl::io::Value summary = r.summary("api");
+  for (const whirl::io::Value& c : summary.at("compliance").items())
+    if (c.at("check").text() == "vibration at probes") {
+      EXPECT_NEAR(c.at("value").number(), 15880, 60);
+    }
 }

@@ -57,6 +57,17 @@ TEST(HarmonicLimits, AxialForceOnAFreeShaftIsAnError) {
   EXPECT_TRUE(r.says("nothing resists axial motion of shaft 'hp'")) << r.log;
 }
 
+// Along the axis nothing takes part in lateral motion: the force had no effect, and nobody said so.
+TEST(HarmonicLimits, WhatLateralMotionLeavesOutIsSaid) {
+  const whirl::test::DeckRun r(deck("kxx = \"1e7 N/m\"", "10 Hz", "lateral"));
+  EXPECT_EQ(r.exit, 0) << r.log;
+  EXPECT_TRUE(
+      r.says("leaves out, with the motion they belong to: of a force the force along its axis"))
+      << r.log;
+  const whirl::test::DeckRun axial(deck("kxx = \"1e7 N/m\"", "10 Hz", "axial"));
+  EXPECT_FALSE(axial.says("leaves out")) << axial.log;
+}
+
 TEST(HarmonicLimits, ThrustBearingCarriesIt) {
   const whirl::test::DeckRun still(deck("kxx = \"1e7 N/m\"", "0 Hz", "axial"));
   ASSERT_EQ(still.exit, 0) << still.log;

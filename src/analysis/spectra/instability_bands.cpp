@@ -105,13 +105,13 @@ class BandSearch {
       inner = from;
       a = passage(stable, from, level, 1.001, &inner, true);
     }
-    // Another motion may go on growing where the one followed has ceased to.
+    // Another motion may go on growing where the one followed has ceased to, or was lost where two meet.
     for (int round = 0; round < 8; ++round) {
       Visited outside{a.speed + 1e-4 * (stable - a.speed), {}};
       outside.growth = at(outside.speed);
-      if (!(outside.growth.rate > 1.1 * std::max(level, a.growth.rate))) break;
+      if (!(outside.growth.rate > 1.1 * level)) break;
       from = inner = outside;
-      a = passage(stable, from, level, 1.001, &inner);
+      a = passage(stable, from, level, 1.001, &inner, true);
     }
     if (from.growth.rate < 4.0 * level) return a.speed;
     const Visited b = passage(a.speed, inner, 3.0 * level, 2.0);
@@ -392,11 +392,11 @@ double unnoticed_share(const RotatingAxes& axes) {
   return axes.constant() ? 1e-6 : 3e-5;
 }
 
-double largest_growth(RotatingAxes& axes, double Omega, Index modes) {
+double largest_growth(RotatingAxes& axes, double Omega, double fastest, Index modes) {
   BandOptions o;
   o.modes = modes;
   o.sense = Omega < 0.0 ? -1.0 : 1.0;
-  o.speeds = {std::abs(Omega)};
+  o.speeds = {std::abs(fastest)};
   return BandSearch(axes, o).at(std::abs(Omega)).rate;
 }
 

@@ -42,8 +42,8 @@ struct BandResult {
 /// make of nothing, or rounding where the matrices are constant.
 double unnoticed_share(const RotatingAxes& axes);
 /// Largest real part, 1/s, of the motions at a speed, rad/s, with its sign; modes: of least frequency in rotating
-/// axes.
-double largest_growth(RotatingAxes& axes, double Omega, Index modes);
+/// axes, as many as are looked at where speeds go up to the fastest.
+double largest_growth(RotatingAxes& axes, double Omega, double fastest, Index modes);
 
 /// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the
 /// speeds are found where they belong to a critical speed (whirl at the speed itself), or lie halfway
