@@ -35,14 +35,19 @@ double most_in_tail(double n, double p) {
 }  // namespace
 
 double covered_share(const std::vector<double>& weights) {
-  double sum = 0, squares = 0;
+  double sum = 0, squares = 0, heaviest = 0;
   for (const double w : weights) {
     sum += w;
     squares += w * w;
+    heaviest = std::max(heaviest, w);
   }
-  constexpr double errors = 4;  // of the mean weight, by which it is less once in 30,000 times
+  if (!(sum > 0)) return 0;
+  constexpr double fewest = 10;  // runs they are worth, from which their mean has an error
+  constexpr double errors = 4;   // of the mean weight, by which it is less once in 30,000 times
   const auto runs = static_cast<double>(weights.size());
   const double mean = sum / runs;
+  if (sum * sum < std::min(fewest, 0.5 * runs) * squares)  // some few are all there is
+    return std::min(1.0, mean) * (1 - heaviest / sum);
   const double error = std::sqrt(std::max(0.0, squares / runs - mean * mean) / runs);
   return mean + errors * error < 1 - 1e-9 ? mean : 1.0;  // 1e-9: rounding
 }

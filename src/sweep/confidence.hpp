@@ -39,8 +39,10 @@ std::string obstacle_to_bounds(const Plan& plan);
 bool follows_distributions(const Design& design);
 /// Whether the runs are samples, independent of each other, whose mean has a standard error.
 bool independent_runs(const Plan& plan);
-/// How much of a distribution the samples stand for that were drawn from another one, by the mean of their
-/// weights; 1 where that may be 1. Of the rest nothing is known: there are no means and no quantiles.
+/// How much of a distribution the samples stand for that were drawn from another one, by the mean of
+/// their weights; 1 where that may be 1; where some few runs weigh nearly all, what it is without the
+/// heaviest. Of the rest nothing is known: there are no means and no quantiles.
+/// Weights are not negative.
 /// @pre at least one weight
 double covered_share(const std::vector<double>& weights);
 /// Between which the probability of something lies with confidence_of_bounds that happened in `count`

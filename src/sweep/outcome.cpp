@@ -215,19 +215,39 @@ void add_statistics(const io::Table& statistics, std::vector<io::Table>& tables)
                            {0, 1, 8, 12, 13, 9, 14, 15, 10, 16, 17, 18}));
 }
 
+/// "y > 40"
+std::string name_of(const Plan& plan, const Limit& limit) {
+  return fmt::format("{} {} {:.6g}", plan.responses[limit.response].name, limit.above ? ">" : "<",
+                     limit.value);
+}
+
+Probability probability_of(const Columns& c, const Limit& limit) {
+  return probability_beyond(c.responses[limit.response], c.weight, limit.value, limit.above);
+}
+
+/// What weighted samples leave open of a probability; empty: nothing.
+std::string open_text(const Probability& p) {
+  if (p.covered == 1.0) return "";
+  const std::string share =
+      fmt::format("those drawn stand for {:.2g} of the distribution only", p.covered);
+  return share + (p.known ? ": the rest is taken to lie on the other side, as the heaviest runs do"
+                          : ", and the rest may lie on either side");
+}
+
 /// "195 of 400 runs gave no 'on': ..": what a probability does not cover.
 std::string uncovered_text(const Plan& plan, const Columns& c) {
   std::string text;
   for (const Limit& limit : plan.limits) {
-    const std::vector<double>& values = c.responses[limit.response];
-    const Probability p = probability_beyond(values, c.weight, limit.value, limit.above);
-    if (p.without == 0) continue;
-    text += fmt::format(
-        "{} of {} runs gave no '{}': the probability of {} {} {:.6g} is that of the others; of all "
-        "it is from "
-        "{:.4g} to {:.4g}\n",
-        p.without, values.size(), plan.responses[limit.response].name,
-        plan.responses[limit.response].name, limit.above ? ">" : "<", limit.value, p.least, p.most);
+    const Probability p = probability_of(c, limit);
+    if (p.without > 0)
+      text += fmt::format(
+          "{} of {} runs gave no '{}': the probability of {} is that of the others; of all it is "
+          "from {:.4g} to {:.4g}\n",
+          p.without, c.weight.size(), plan.responses[limit.response].name, name_of(plan, limit),
+          p.least, p.most);
+    if (p.covered < 1.0)
+      text += fmt::format("the probability of {} lies between {:.4g} and {:.4g}: {}\n",
+                          name_of(plan, limit), p.least, p.most, open_text(p));
   }
   return text;
 }
@@ -237,9 +257,8 @@ io::Table probabilities_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Probabilities";
   t.nan_means =
-      "no run gave a value; an error: none of weighted samples lies there, or the runs are no "
-      "independent "
-      "samples";
+      "no run gave a value, or see the last column; an error: none or all of weighted samples lie "
+      "there, or the runs are no independent samples";
   const bool independent = independent_runs(plan);
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
@@ -249,14 +268,16 @@ io::Table probabilities_table(const Plan& plan, const Columns& c) {
                {"runs", "-", "that lie there"},
                {"runs without a value", "-", ""},
                {"at least", "-", "of all runs: none of those without a value lies there"},
-               {"at most", "-", "of all runs: all of those without a value lie there"}};
+               {"at most", "-",
+                "of all runs: all of those without a value lie there, and what weighted samples do "
+                "not stand for"},
+               {"open", "-", "what weighted samples do not tell"}};
   for (const Limit& limit : plan.limits) {
-    const Probability p =
-        probability_beyond(c.responses[limit.response], c.weight, limit.value, limit.above);
+    const Probability p = probability_of(c, limit);
     t.add({plan.responses[limit.response].name, c.units[limit.response],
            fmt::format("{} {:.6g}", limit.above ? ">" : "<", limit.value), p.value,
            independent ? p.error : nan, static_cast<double>(p.runs), static_cast<double>(p.without),
-           p.least, p.most});
+           p.least, p.most, open_text(p)});
   }
   return t;
 }
@@ -457,40 +478,89 @@ WeightedStatistics weighted_statistics(const std::vector<double>& values,
   return s;
 }
 
+namespace {
+
+/// Runs that gave a value, and what those beyond a limit weigh among them.
+struct Split {
+  double runs = 0, known = 0, unknown = 0, beyond = 0, squares_beyond = 0, squares = 0;
+  std::size_t hits = 0;
+};
+
+bool lies_beyond(double x, double limit, bool above) { return above ? x > limit : x < limit; }
+
+Split split_at(const std::vector<double>& values, const std::vector<double>& weights, double limit,
+               bool above) {
+  Split s;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double w = weights[k];
+    (std::isnan(values[k]) ? s.unknown : s.known) += w;
+    if (std::isnan(values[k])) continue;
+    ++s.runs;
+    s.squares += w * w;
+    if (!lies_beyond(values[k], limit, above)) continue;
+    ++s.hits;
+    s.beyond += w;
+    s.squares_beyond += w * w;
+  }
+  return s;
+}
+
+/// Whether the runs beyond a limit are lighter than the others by more than chance: then what the
+/// samples do not reach, to which the heaviest are nearest, is taken to lie on the other side.
+bool lie_apart(const std::vector<double>& values, const std::vector<double>& weights, double limit,
+               bool above, const Split& s) {
+  double heaviest = 0, heavier = 0;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (lies_beyond(values[k], limit, above)) heaviest = std::max(heaviest, weights[k]);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    heavier += !std::isnan(values[k]) && weights[k] > heaviest;
+  // that none of the heavier ones lies there, if it were the same for all weights
+  constexpr double chance = 1e-3;
+  return s.hits > 0 && std::pow(1.0 - static_cast<double>(s.hits) / s.runs, heavier) < chance;
+}
+
+/// Of the mean over the runs: of all weights, or self-normalised.
+double error_of_mean(const Split& s, double p, bool self_normalised, double all) {
+  if (self_normalised) {
+    const double spread = s.squares_beyond * (1 - 2 * p) + p * p * s.squares;
+    return s.runs > 1 ? std::sqrt(std::max(0.0, spread) * s.runs / (s.runs - 1)) / s.known : nan;
+  }
+  const double mean = s.beyond / all;
+  return std::sqrt(std::max(0.0, s.squares_beyond / all - mean * mean) / (all - 1)) /
+         (1.0 - s.unknown / all);
+}
+
+}  // namespace
+
 Probability probability_beyond(const std::vector<double>& values,
                                const std::vector<double>& weights, double limit, bool above) {
   WHIRL_EXPECTS(values.size() == weights.size());
-  Probability p;
-  double n = 0, squares = 0, unknown = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (std::isnan(values[k])) {
-      ++p.without;
-      unknown += weights[k];
-      continue;
-    }
-    ++n;
-    if (above ? !(values[k] > limit) : !(values[k] < limit)) continue;
-    ++p.runs;
-    p.value += weights[k];
-    squares += weights[k] * weights[k];
-  }
-  const double all = static_cast<double>(values.size());
-  p.least = p.value / all;
-  p.most = std::min(1.0, (p.value + unknown) / all);
-  if (n == 0) {
-    p.value = p.error = nan;
-    return p;
-  }
-  p.value /= n;
+  const Split s = split_at(values, weights, limit, above);
+  const double runs = static_cast<double>(values.size()), all = s.known + s.unknown;
   const bool weighted =
       std::any_of(weights.begin(), weights.end(), [](double w) { return w != 1.0; });
+  Probability p;
+  p.runs = s.hits;
+  p.without = values.size() - static_cast<std::size_t>(s.runs);
+  p.covered = covered_share(weights);
+  // The mean weight is 1. Where the heaviest runs count, self-normalising makes up for how often
+  // they came; where they do not, it would spoil what is known of the others.
+  const bool apart =
+      weighted && s.beyond + s.unknown <= runs && lie_apart(values, weights, limit, above, s);
+  const double base = apart || p.covered < 1.0 ? runs : all;
+  p.least = std::min(p.covered, s.beyond / base);
+  p.most = std::min(1.0, p.least + s.unknown / base + (1.0 - p.covered));
+  p.known = s.runs > 0 && s.known > 0 && (apart || p.covered == 1.0);
+  p.value = p.known ? s.beyond / (apart ? runs - s.unknown : s.known) : nan;
   // Of none or all of n runs nothing spreads: the probability that leaves this outcome one chance in
   // twenty (for weighted samples there is none).
   constexpr double chance = 0.05;
-  if (p.runs == 0 || (!weighted && static_cast<double>(p.runs) == n))
-    p.error = weighted ? nan : 1.0 - std::pow(chance, 1.0 / n);
+  const bool one_side = s.hits == 0 || static_cast<double>(s.hits) == s.runs;
+  if (!p.known || (weighted && one_side))
+    p.error = nan;
   else
-    p.error = n > 1 ? std::sqrt(std::max(0.0, squares / n - p.value * p.value) / (n - 1)) : nan;
+    p.error =
+        one_side ? 1.0 - std::pow(chance, 1.0 / s.runs) : error_of_mean(s, p.value, !apart, runs);
   return p;
 }
 

@@ -33,13 +33,20 @@ struct WeightedStatistics {
 WeightedStatistics weighted_statistics(const std::vector<double>& values,
                                        const std::vector<double>& weights);
 
-/// Mean of the weights of the values beyond a limit, with its standard error.
+/// How probable a value beyond a limit is. Of weighted samples self-normalised, or where the runs
+/// beyond are lighter than the others by more than chance (rare cases that are drawn for) the sum of
+/// their weights over the number of runs.
 struct Probability {
-  double value = 0, error = 0;  ///< of the runs that gave a value
-  std::size_t runs = 0;         ///< beyond
-  std::size_t without = 0;      ///< gave no value: nobody knows on which side they are
-  double least = 0, most = 0;   ///< of all runs: none, all of those without a value beyond
+  double value = 0, error = 0;  ///< of the runs that gave a value; nan: not known
+  bool known = true;
+  std::size_t runs = 0;     ///< beyond
+  std::size_t without = 0;  ///< gave no value: nobody knows on which side they are
+  double covered = 1;       ///< share of the distribution that weighted samples stand for
+  /// Of all runs and all that weighted samples do not stand for: none, all of what is not known
+  /// beyond.
+  double least = 0, most = 0;
 };
+/// @pre one weight a value
 Probability probability_beyond(const std::vector<double>& values,
                                const std::vector<double>& weights, double limit, bool above);
 

@@ -321,6 +321,36 @@ TEST_F(Sweep, TheUsersFilesStay) {
   EXPECT_NE(log_.find("symbolic link"), std::string::npos) << log_;
 }
 
+// Half of the runs, a thousandth of the distribution, have a negative mass and fail.
+TEST_F(Sweep, ProbabilitiesOfWeightedSamplesLieWithinTheirBounds) {
+  ASSERT_EQ(
+      whirl("sweep d.toml -o s --vary 'disk.disk.mass=normal(3 kg, 1 kg) drawn normal(0 kg, 3 kg)' "
+            "--samples 60 --sampling random --response 'first=c_undamped:speed:1' --exceed "
+            "'first>0'"),
+      0)
+      << log_;
+  const auto p = Columns(folder_ / "s/probabilities.csv").last();
+  EXPECT_DOUBLE_EQ(p.at("probability [-]"), 1.0);
+  EXPECT_GT(p.at("runs without a value [-]"), 20);
+  EXPECT_GT(p.at("at least [-]"), 0.95);
+  EXPECT_DOUBLE_EQ(p.at("at most [-]"), 1.0);
+}
+
+TEST_F(Sweep, ProbabilitiesOfSamplesThatMissTheirDistributionAreWithheld) {
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary 'disk.disk.mass=normal(3 kg, 0.1 kg) drawn normal(4 "
+                  "kg, 0.1 kg)' "
+                  "--samples 20 --sampling random --response 'first=c_undamped:speed:1' --exceed "
+                  "'first>0'"),
+            0)
+      << log_;
+  const auto p = Columns(folder_ / "s/probabilities.csv").last();
+  EXPECT_TRUE(std::isnan(p.at("probability [-]")));
+  EXPECT_LT(p.at("at least [-]"), 0.5);
+  EXPECT_DOUBLE_EQ(p.at("at most [-]"), 1.0);
+  EXPECT_NE(read("s/probabilities.csv").find("may lie on either side"), std::string::npos);
+  EXPECT_NE(log_.find("the probability of first > 0 lies between"), std::string::npos) << log_;
+}
+
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   const std::string response = " --response c_undamped:speed";
   for (const std::string& arguments :

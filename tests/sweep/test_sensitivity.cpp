@@ -193,9 +193,85 @@ TEST(WeightedSamples, SayHowMuchOfTheDistributionTheyStandFor) {
     return covered_share(weights);
   };
   EXPECT_LT(share_of("a.x=normal(0, 1) drawn normal(4, 1.2)"), 0.5);
+  EXPECT_LT(share_of("a.x=normal(0, 1) drawn normal(6, 1)"), 0.5);
   EXPECT_EQ(share_of("a.x=normal(0, 1) drawn normal(1, 1.5)"), 1.0);
   EXPECT_EQ(share_of("a.x=normal(0, 1) drawn uniform(-6, 6)"), 1.0);
   EXPECT_EQ(share_of("a.x=normal(0, 1)"), 1.0);
+}
+
+std::vector<double> weights_of(const Design& d) {
+  std::vector<double> w;
+  for (std::int64_t run = 0; run < d.runs(); ++run)
+    w.push_back(d.weight(run));
+  return w;
+}
+
+// x = N(1.5, 0.5), drawn from N(0, 1.5); half of the runs, those below 0, give no value: 0.0013 of
+// the distribution.
+TEST(WeightedSamples, WithFailedRunsGiveProbabilitiesWithinTheirBounds) {
+  const Design d({read_factor("a.x=normal(1.5, 0.5) drawn normal(0, 1.5)")}, 2000, Sampling::random,
+                 1);
+  const auto y = runs_of(d, [](const auto& x) { return x[0] < 0 ? nan : x[0]; });
+  const std::vector<double> w = weights_of(d);
+  for (const double limit : {-1.0, 0.5, 1.5, 2.0, 2.5}) {
+    const double failing = normal_probability(-3);
+    const double exact = limit < 0 ? 1 : normal_probability((1.5 - limit) / 0.5) / (1 - failing);
+    const Probability p = probability_beyond(y, w, limit, true);
+    EXPECT_NEAR(p.value, exact, limit < 0 ? 1e-12 : 3 * p.error) << limit;
+    EXPECT_LE(p.least, p.value) << limit;
+    EXPECT_GE(p.most, p.value) << limit;
+    EXPECT_LT(p.most - p.least, 0.005) << limit;
+    EXPECT_LE(p.most, 1.0) << limit;
+    EXPECT_GT(p.without, 900u);
+  }
+}
+
+TEST(WeightedSamples, OfWhichAllLieBeyondLieThereSurely) {
+  const Design d({read_factor("a.x=normal(0, 1) drawn normal(0.5, 1.3)")}, 500, Sampling::random,
+                 3);
+  const auto y = runs_of(d, [](const auto& x) { return x[0]; });
+  EXPECT_DOUBLE_EQ(probability_beyond(y, weights_of(d), -100, true).value, 1.0);
+}
+
+// Of N(100, 10), drawn from N(150, 10): next to nothing of the distribution.
+TEST(WeightedSamples, ThatMissTheirDistributionBoundAProbability) {
+  const Design d({read_factor("a.x=normal(100, 10) drawn normal(150, 10)")}, 400, Sampling::random,
+                 1);
+  const auto y = runs_of(d, [](const auto& x) { return x[0]; });
+  const std::vector<double> w = weights_of(d);
+  const auto holds = [&](double limit, bool above, double exact) {
+    const Probability p = probability_beyond(y, w, limit, above);
+    EXPECT_LT(p.covered, 0.5);
+    EXPECT_TRUE(std::isnan(p.value)) << limit;
+    EXPECT_TRUE(std::isnan(p.error)) << limit;
+    EXPECT_LE(p.least, exact) << limit;
+    EXPECT_GE(p.most, exact) << limit;
+  };
+  holds(110, true, normal_probability(-1));
+  holds(80, true, normal_probability(2));
+  holds(150, false, normal_probability(5));
+  // what is drawn for is known: the runs that weigh most lie on the other side
+  const Probability rare = probability_beyond(y, w, 150, true);
+  EXPECT_NEAR(rare.value, normal_probability(-5), 3 * rare.error);
+  EXPECT_LT(rare.error, 0.2 * rare.value);
+}
+
+TEST(WeightedSamples, ThatMissHalfOfTheirDistributionBoundAProbability) {
+  const Design d({read_factor("a.x=uniform(90, 110) drawn normal(108, 3)")}, 400, Sampling::random,
+                 1);
+  const auto y = runs_of(d, [](const auto& x) { return x[0]; });
+  const Probability p = probability_beyond(y, weights_of(d), 108, false);
+  EXPECT_FALSE(p.known);
+  EXPECT_LT(p.least, 0.9);
+  EXPECT_GT(p.most, 0.9);
+}
+
+// The mean weight is 1, and all of it that of one run.
+TEST(WeightedSamples, OfWhichOneWeighsAllStandForNothing) {
+  std::vector<double> weights(100, 1e-3);
+  weights[7] = 100;
+  EXPECT_LT(covered_share(weights), 0.01);
+  EXPECT_EQ(covered_share({1.1, 0.9, 1}), 1.0);
 }
 
 TEST(Densities, IntegrateToOneOverTheirQuantiles) {
