@@ -23,18 +23,21 @@ namespace {
 
 using Rows = std::map<std::int64_t, Row>;
 
-/// Mean ranks, from 1.
-std::vector<double> ranks_of(const std::vector<double>& x) {
+/// Ranks by weight: of what lies below, and half of what is equal.
+std::vector<double> ranks_of(const std::vector<double>& x, const std::vector<double>& weights) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return x[a] < x[b]; });
   std::vector<double> rank(x.size());
+  double below = 0;
   for (std::size_t i = 0; i < order.size();) {
+    double same = 0;
     std::size_t j = i;
-    while (j < order.size() && x[order[j]] == x[order[i]])
-      ++j;
+    for (; j < order.size() && x[order[j]] == x[order[i]]; ++j)
+      same += weights[order[j]];
     for (std::size_t k = i; k < j; ++k)
-      rank[order[k]] = 0.5 * static_cast<double>(i + j + 1);
+      rank[order[k]] = below + 0.5 * same;
+    below += same;
     i = j;
   }
   return rank;
@@ -344,18 +347,21 @@ io::Table sensitivity_table(const Plan& plan, const Columns& c) {
 io::Table effects_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "What the responses depend on";
+  const double share = covered_share(c.weight);
   t.nan_means = "one of the two does not vary, or is text";
+  if (share < 1.0)
+    t.nan_means = fmt::format(
+        "weighted samples: those drawn stand for {:.2g} of the distribution only", share);
   t.columns = {{"response", "-", ""},
                {"varied", "-", ""},
                {"rank correlation", "-",
-                "after Spearman: 1 or -1 where one grows or falls with the "
-                "other throughout"}};
+                "after Spearman, by the weights of the runs: 1 or -1 where one grows or falls with "
+                "the other throughout"}};
   for (std::size_t r = 0; r < plan.responses.size(); ++r) {
     if (!c.words[r].empty()) continue;
-    for (std::size_t f = 0; f < c.factors.size(); ++f) {
-      const auto [x, y] = pairs_of(c.factors[f], c.responses[r]);
-      t.add({plan.responses[r].name, plan.design.factors()[f].path, rank_correlation(x, y)});
-    }
+    for (std::size_t f = 0; f < c.factors.size(); ++f)
+      t.add({plan.responses[r].name, plan.design.factors()[f].path,
+             rank_correlation(c, c.factors[f], c.responses[r])});
   }
   return t;
 }
@@ -564,17 +570,29 @@ Probability probability_beyond(const std::vector<double>& values,
   return p;
 }
 
-double rank_correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  WHIRL_EXPECTS(x.size() == y.size());
-  const auto a = ranks_of(x), b = ranks_of(y);
-  const double mean = 0.5 * static_cast<double>(x.size() + 1);
+double rank_correlation(const std::vector<double>& x, const std::vector<double>& y,
+                        const std::vector<double>& weights) {
+  WHIRL_EXPECTS(x.size() == y.size() && x.size() == weights.size());
+  const auto a = ranks_of(x, weights), b = ranks_of(y, weights);
+  const double mean = 0.5 * std::accumulate(weights.begin(), weights.end(), 0.0);
   double ab = 0, aa = 0, bb = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    ab += (a[i] - mean) * (b[i] - mean);
-    aa += (a[i] - mean) * (a[i] - mean);
-    bb += (b[i] - mean) * (b[i] - mean);
+    ab += weights[i] * (a[i] - mean) * (b[i] - mean);
+    aa += weights[i] * (a[i] - mean) * (a[i] - mean);
+    bb += weights[i] * (b[i] - mean) * (b[i] - mean);
   }
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : nan;
+}
+
+double rank_correlation(const Columns& c, const std::vector<double>& x,
+                        const std::vector<double>& y) {
+  WHIRL_EXPECTS(x.size() == y.size() && x.size() == c.weight.size());
+  if (covered_share(c.weight) < 1.0) return nan;
+  auto [a, b] = pairs_of(x, y);
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!std::isnan(x[i]) && !std::isnan(y[i])) weights.push_back(c.weight[i]);
+  return rank_correlation(a, b, weights);
 }
 
 namespace {

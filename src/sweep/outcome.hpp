@@ -1,5 +1,6 @@
 // What a finished sweep shows: its table, statistics of the responses, and what they depend on.
 #pragma once
+#include <sweep/columns.hpp>
 #include <sweep/plan.hpp>
 #include <map>
 
@@ -50,8 +51,14 @@ struct Probability {
 Probability probability_beyond(const std::vector<double>& values,
                                const std::vector<double>& weights, double limit, bool above);
 
-/// Rank correlation (Spearman) of two samples, -1 .. 1; ties share their mean rank; nan when one of
-/// them does not vary.
-double rank_correlation(const std::vector<double>& x, const std::vector<double>& y);
+/// Rank correlation (Spearman) of two samples that count by weights, -1 .. 1; ties share their mean
+/// rank; nan when one of them does not vary.
+/// @pre one weight a pair
+double rank_correlation(const std::vector<double>& x, const std::vector<double>& y,
+                        const std::vector<double>& weights);
+/// Of two columns of runs, over those in which both are numbers; nan where weighted samples do not
+/// stand for their distribution too.
+double rank_correlation(const Columns& c, const std::vector<double>& x,
+                        const std::vector<double>& y);
 
 }  // namespace whirl::sweep

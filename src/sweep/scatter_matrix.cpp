@@ -28,8 +28,7 @@ bool varies(const std::vector<double>& column) {
 double importance_of(const Columns& c, const std::vector<double>& key) {
   double most = 0;
   for (const auto& response : c.responses) {
-    const auto [x, y] = pairs_of(key, response);
-    const double correlation = rank_correlation(x, y);
+    const double correlation = rank_correlation(c, key, response);
     if (!std::isnan(correlation)) most = std::max(most, std::abs(correlation));
   }
   return most;
@@ -125,9 +124,8 @@ plot::Axes cloud_of(const Column& across, const Column& up, bool first, bool las
   return axes;
 }
 
-plot::Axes correlation_of(const Column& across, const Column& up) {
-  const auto [x, y] = pairs_of(*across.values, *up.values);
-  const double exact = rank_correlation(x, y);
+plot::Axes correlation_of(const Columns& c, const Column& across, const Column& up) {
+  const double exact = rank_correlation(c, *across.values, *up.values);
   const double correlation = std::abs(exact) < 0.005 ? 0.0 : exact;  // no "-0.00"
   plot::Axes axes;
   axes.x = plain_axis();
@@ -155,7 +153,7 @@ plot::Figure scatter_matrix(const Plan& plan, const Columns& c) {
       const bool last = row + 1 == n;
       plot::Axes axes = k == row  ? histogram_of(columns[k], last)
                         : k < row ? cloud_of(columns[k], columns[row], k == 0, last)
-                                  : correlation_of(columns[k], columns[row]);
+                                  : correlation_of(c, columns[k], columns[row]);
       axes.legend = false;
       figure.axes.push_back(std::move(axes));
     }

@@ -265,8 +265,7 @@ std::vector<std::size_t> most_important(const Columns& c, std::size_t r,
                                         const std::vector<std::size_t>& keys) {
   std::vector<std::pair<double, std::size_t>> order;
   for (const std::size_t k : keys) {
-    const auto [x, y] = pairs_of(c.factors[k], c.responses[r]);
-    const double correlation = rank_correlation(x, y);
+    const double correlation = rank_correlation(c, c.factors[k], c.responses[r]);
     order.emplace_back(std::isnan(correlation) ? 0.0 : -std::abs(correlation), k);
   }
   std::sort(order.begin(), order.end());

@@ -351,6 +351,16 @@ TEST_F(Sweep, ProbabilitiesOfSamplesThatMissTheirDistributionAreWithheld) {
   EXPECT_NE(log_.find("the probability of first > 0 lies between"), std::string::npos) << log_;
 }
 
+TEST_F(Sweep, EffectsOfSamplesThatMissTheirDistributionAreWithheld) {
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary 'disk.disk.mass=normal(3 kg, 0.1 kg) drawn normal(4 "
+                  "kg, 0.1 kg)' "
+                  "--samples 20 --sampling random --response 'first=c_undamped:speed:1'"),
+            0)
+      << log_;
+  EXPECT_TRUE(std::isnan(io::read_csv(folder_ / "s/effects.csv")["rank correlation"][0]));
+  EXPECT_NE(read("s/sweep.html").find("of the distribution only"), std::string::npos);
+}
+
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   const std::string response = " --response c_undamped:speed";
   for (const std::string& arguments :

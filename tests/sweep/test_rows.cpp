@@ -130,11 +130,24 @@ TEST(SweepStatistics, OfKnownSamples) {
   EXPECT_DOUBLE_EQ(s.p95, 4.8);
   EXPECT_DOUBLE_EQ(s.least, 1);
   EXPECT_DOUBLE_EQ(s.largest, 5);
-  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {1, 8, 27, 64}), 1);
-  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}), -1);
-  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 2, 3}, {1, 2, 2, 3}), 1);
-  EXPECT_NEAR(rank_correlation({1, 2, 3}, {2, 1, 3}), 0.5, 1e-15);
-  EXPECT_TRUE(std::isnan(rank_correlation({1, 1, 1}, {1, 2, 3})));
+}
+
+double plain_correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  return rank_correlation(x, y, std::vector<double>(x.size(), 1.0));
+}
+
+TEST(RankCorrelation, OfKnownSamples) {
+  EXPECT_DOUBLE_EQ(plain_correlation({1, 2, 3, 4}, {1, 8, 27, 64}), 1);
+  EXPECT_DOUBLE_EQ(plain_correlation({1, 2, 3, 4}, {4, 3, 2, 1}), -1);
+  EXPECT_DOUBLE_EQ(plain_correlation({1, 2, 2, 3}, {1, 2, 2, 3}), 1);
+  EXPECT_NEAR(plain_correlation({1, 2, 3}, {2, 1, 3}), 0.5, 1e-15);
+  EXPECT_TRUE(std::isnan(plain_correlation({1, 1, 1}, {1, 2, 3})));
+}
+
+// A run of weight 3 is three runs.
+TEST(RankCorrelation, CountsRunsByTheirWeights) {
+  EXPECT_NEAR(rank_correlation({1, 2, 3, 4}, {2, 1, 4, 3}, {3, 1, 2, 0}),
+              plain_correlation({1, 1, 1, 2, 3, 3}, {2, 2, 2, 1, 4, 4}), 1e-15);
 }
 
 TEST(SweepWorkers, CrashesAndHangsCostTheirOwnRun) {

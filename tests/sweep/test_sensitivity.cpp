@@ -266,6 +266,25 @@ TEST(WeightedSamples, ThatMissHalfOfTheirDistributionBoundAProbability) {
   EXPECT_GT(p.most, 0.9);
 }
 
+// |x| of N(0, 1) neither grows nor falls with x; where it is drawn, around 1, it grows.
+TEST(WeightedSamples, CorrelateAsTheirDistributionDoes) {
+  const Design d({read_factor("a.x=normal(0, 1) drawn normal(1, 1.3)")}, 4000, Sampling::random, 1);
+  Columns c;
+  c.factors = {runs_of(d, [](const auto& x) { return x[0]; })};
+  c.responses = {runs_of(d, [](const auto& x) { return std::abs(x[0]); })};
+  c.weight = weights_of(d);
+  EXPECT_NEAR(rank_correlation(c, c.factors[0], c.responses[0]), 0.0, 0.1);
+  EXPECT_GT(rank_correlation(c.factors[0], c.responses[0], std::vector<double>(4000, 1.0)), 0.4);
+}
+
+TEST(WeightedSamples, ThatMissTheirDistributionDoNotCorrelate) {
+  const Design d({read_factor("a.x=normal(0, 1) drawn normal(4, 1)")}, 400, Sampling::random, 1);
+  Columns c;
+  c.factors = {runs_of(d, [](const auto& x) { return x[0]; })};
+  c.weight = weights_of(d);
+  EXPECT_TRUE(std::isnan(rank_correlation(c, c.factors[0], c.factors[0])));
+}
+
 // The mean weight is 1, and all of it that of one run.
 TEST(WeightedSamples, OfWhichOneWeighsAllStandForNothing) {
   std::vector<double> weights(100, 1e-3);
