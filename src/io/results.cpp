@@ -185,7 +185,9 @@ void ResultsFolder::write_table(std::string_view name, const Table& table) const
                                      [&](const auto& row) { return unexpected(row[k]); });
     note_nonfinite(name, table.columns[k].name, static_cast<std::size_t>(count));
   }
-  if (wanted(name)) write_csv(path(name), table);
+  if (!wanted(name)) return;
+  write_csv(path(name), table);
+  if (seen_) seen_(name, table);
 }
 
 }  // namespace whirl::io

@@ -119,6 +119,9 @@ class Table {
   /// What "nan" in a cell stands for ("the mode is not there at this speed"); empty: there is to be
   /// none, and one that is written all the same is reported (nonfinite.hpp).
   std::string nan_means;
+  /// The row of such a cell has nothing to give there (no such mode at this speed): who looks for the largest
+  /// of a column passes it by. Else there is a value, which is without bound or was not found.
+  bool nan_is_absence = false;
 
   /// Adds a row.
   /// @throws std::logic_error when it has not one cell a column.
@@ -140,6 +143,9 @@ class ResultsFolder {
   /// Of texts and tables these alone are written, and no list of what is: for a folder from which
   /// they are read at once, and which is thrown away. Names as in write_table().
   void write_only(std::vector<std::string> names);
+  /// Called with every table that is written from now on, with its name.
+  using TableSeen = std::function<void(std::string_view name, const Table& table)>;
+  void show_tables_to(TableSeen seen) { seen_ = std::move(seen); }
   /// Who writes from now on, by name: two owners do not write one file.
   void set_owner(std::string owner) { owner_ = std::move(owner); }
   /// Path of a file that will be written in it, and listed as such; makes the folders in between.
@@ -164,6 +170,7 @@ class ResultsFolder {
   std::shared_ptr<Manifest> manifest_;
   std::string owner_;
   std::vector<std::string> only_;  ///< empty: all
+  TableSeen seen_;                 ///< empty: nobody
 };
 
 }  // namespace whirl::io

@@ -257,6 +257,7 @@ io::Table film_table(std::span<const SupportCoefficients> list) {
   t.nan_means =
       "of the whole bearing there is no such number, its film has no heat balance, or it is solved "
       "along the axis";
+  t.nan_is_absence = true;
   t.columns = {{"bearing", "-", ""},
                {"speed", "rpm", ""},
                {"pad", "-", "0: all of the bearing"},

@@ -117,6 +117,7 @@ RingTables ring_tables(std::span<const SupportCoefficients> list) {
   RingTables out;
   out.rings.title = "Floating rings at the equilibrium";
   out.rings.nan_means = "the bearing has no such number";
+  out.rings.nan_is_absence = true;
   out.rings.columns = ring_columns();
   out.reduced =
       reduced_table("Coefficients that the shaft sees with the rings following, by frequency");

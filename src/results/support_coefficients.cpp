@@ -633,6 +633,7 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Bearings about the equilibrium";
   t.nan_means = "the bearing has no such number, or is never unstable";
+  t.nan_is_absence = true;
   t.columns = {{"bearing", "-", ""},
                {"speed", "rpm", ""},
                {"load", "N", "on the bearing, lateral"},

@@ -313,6 +313,7 @@ io::Table TorquesOutput::table() const {
     t.columns.push_back({"times", "-", "that the part endures it; empty: endlessly"});
   }
   t.nan_means = "no stress is known there, no end of life";
+  t.nan_is_absence = true;
   for (std::size_t k = 0; k < elements(); ++k) {
     const meshes::Element& e = job_.mesh.elements[k];
     add_row(t, {job_.mesh.lines[at(e.line)].name, e.s1, e.s2}, worse(k), damage(k));

@@ -3,6 +3,7 @@
 #include <deck/deck.hpp>
 #include <filesystem>
 #include <functional>
+#include <io/results.hpp>
 #include <model/model.hpp>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct RunOptions {
   /// Texts and tables that are written ("STEP_modes.csv"), into a folder of this run alone from which
   /// they are read at once; empty: everything, into a folder that is kept.
   std::vector<std::string> only_files;
+  /// Called with every table that is written, by the thread that writes it.
+  io::ResultsFolder::TableSeen seen_table;
   /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps
   /// that vary one. Throws as load_model().
   std::function<model::Model(const std::string& setting)> variant;

@@ -146,6 +146,7 @@ void TorsionalReport::add_train() {
                     {"inertia", "kg m2", "about the axis"},
                     {"stiffness", "N m/rad", "in torsion, of a coupling"}};
   bodies.nan_means = "a body has no stiffness, a coupling no inertia here";
+  bodies.nan_is_absence = true;
   for (const model::Disk& d : m.disks)
     bodies.add({d.name, m.shafts[d.at.shaft].name, d.at.s, d.Ip, nan});
   for (const model::Bearing& b : m.bearings) {

@@ -25,6 +25,7 @@ io::Table make_table(const analysis::Campbell& c) {
   io::Table t;
   t.title = "Campbell diagram";
   t.nan_means = "the mode is not there at this speed, or above those listed";
+  t.nan_is_absence = true;
   t.columns.push_back({"speed", "rpm", ""});
   for (const analysis::CampbellLine& l : c.lines) {
     t.columns.push_back({l.label + " frequency", "Hz", "damped natural frequency"});

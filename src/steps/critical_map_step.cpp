@@ -132,6 +132,7 @@ void add_map(results::FrequencyStep& s, const model::Model& model,
   io::Table table;
   table.title = "Critical speeds against support stiffness";
   table.nan_means = "no such critical speed at this stiffness";
+  table.nan_is_absence = true;
   table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
   std::vector<plot::Curve> curves;
   std::map<std::string, int> count;

@@ -215,6 +215,7 @@ void add_rates(results::FrequencyStep& s, const analysis::StabilityResult& r,
   io::Table rates;
   rates.title = "Log decrement against speed";
   rates.nan_means = "the mode is not there at this speed";
+  rates.nan_is_absence = true;
   rates.columns.push_back({"speed", "rpm", ""});
   for (const plot::CampbellLine& l : lines) {
     rates.columns.push_back({l.label + " log decrement", "-", ""});

@@ -33,13 +33,31 @@ Error bad_response(const std::string& text, const std::string& problem) {
                  Where{}});
 }
 
+/// Whether the row of a cell that is no finite number has nothing to give.
+bool is_absent(const io::TableFile::Column& column, std::size_t row, const NanMeaning& nan) {
+  if (!std::isnan(column.numbers[row])) return false;
+  const bool is_text = !column.texts.empty() && column.texts[row] != "nan";
+  return is_text ? column.texts[row].empty() : nan.absence;
+}
+
+std::string with_meaning(std::string failure, const NanMeaning& nan) {
+  return nan.text.empty() ? failure : failure + ": " + nan.text;
+}
+
 /// What stands against a column as it is; else the values that count.
-std::string finite_values(const std::vector<double>& all, std::vector<double>& out) {
-  for (double x : all)
-    if (std::isfinite(x)) out.push_back(x);
-  if (all.empty()) return "the table has no rows";
-  if (out.empty()) return "no value in the column is finite";
-  return "";
+std::string finite_values(const io::TableFile::Column& column, const NanMeaning& nan,
+                          std::vector<double>& out) {
+  const std::size_t rows = column.numbers.size();
+  std::size_t missing = 0;
+  for (std::size_t row = 0; row < rows; ++row)
+    if (std::isfinite(column.numbers[row]))
+      out.push_back(column.numbers[row]);
+    else
+      missing += !is_absent(column, row, nan);
+  if (rows == 0) return "the table has no rows";
+  if (out.empty()) return with_meaning("no value in the column is finite", nan);
+  if (missing == 0) return "";
+  return with_meaning(fmt::format("no finite value in {} of {} rows", missing, rows), nan);
 }
 
 double picked(Response::Pick pick, const std::vector<double>& values) {
@@ -152,7 +170,8 @@ std::string file_of(const Response& r) {
   return r.table + (r.table == summary_table ? ".json" : ".csv");
 }
 
-Answer answer(const Response& r, const std::filesystem::path& results) {
+Answer answer(const Response& r, const std::filesystem::path& results,
+              const NanMeanings& meanings) {
   Answer a{nan, "", ""};
   const auto file = results / file_of(r);
   std::error_code ec;
@@ -172,8 +191,10 @@ Answer answer(const Response& r, const std::filesystem::path& results) {
     answer_by_row(r, *column, a);
     return a;
   }
+  const auto meaning = meanings.find(file_of(r));
   std::vector<double> values;
-  a.failure = finite_values(column->numbers, values);
+  a.failure =
+      finite_values(*column, meaning == meanings.end() ? NanMeaning() : meaning->second, values);
   if (a.failure.empty()) a.value = picked(r.pick, values);
   return a;
 }

@@ -1,6 +1,7 @@
 // What a sweep looks at: numbers and words out of the tables and the summary that a run writes.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,17 @@ struct Answer {
 };
 /// The file of the results folder that a response is read from.
 std::string file_of(const Response& r);
-/// Words are picked by row, numbers in any way.
-Answer answer(const Response& r, const std::filesystem::path& results);
+/// What "nan" means in the cells of a table, by the name of its file (io::Table::nan_means).
+struct NanMeaning {
+  std::string text;
+  bool absence = false;  ///< the row has nothing to give
+};
+using NanMeanings = std::map<std::string, NanMeaning>;
+/// Words are picked by row, numbers in any way. The least, the largest and the mean are those of all
+/// rows: one that has no finite value is a failure, unless it has nothing to give (an empty cell, or
+/// by what nan means).
+Answer answer(const Response& r, const std::filesystem::path& results,
+              const NanMeanings& meanings = {});
 
 /// "TABLE:COLUMN [unit]" of every table in a results folder, of columns of words "TABLE:COLUMN
 /// (words)", and the entries of the summary, for the user to choose from.

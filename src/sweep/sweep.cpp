@@ -81,9 +81,10 @@ class Runner {
         io::io_failure(results, "nothing is written through a symbolic link:");
       // tables of the run before must not be taken for this one's; of a run's own folder the run knows
       if (!options_.keep) empty(results);
-      row.exit = steps_of(run, results);
+      NanMeanings meanings;
+      row.exit = steps_of(run, results, options_.keep, &meanings);
       for (const Response& r : plan_.responses)
-        row.answers.push_back(answer(r, results));
+        row.answers.push_back(answer(r, results, meanings));
     } catch (const Error& e) {
       row.exit = static_cast<int>(e.exit());
       if (!e.diagnostics().empty()) {
@@ -107,13 +108,12 @@ class Runner {
     return options_.keep ? plan_.root / "runs" / fmt::format("{:06}", run)
                          : shard / fmt::format("worker_{}_{}", rank_, worker);
   }
-  int steps_of(std::int64_t run, const fs::path& results) const {
-    return steps_of(run, results, options_.keep);
-  }
 
  public:
-  /// whole: with the report and the pictures of the deck. @throws as steps::run_deck
-  int steps_of(std::int64_t run, const fs::path& results, bool whole) const {
+  /// whole: with the report and the pictures of the deck. meanings: of nan in its tables, added to;
+  /// null: not asked for. @throws as steps::run_deck
+  int steps_of(std::int64_t run, const fs::path& results, bool whole,
+               NanMeanings* meanings = nullptr) const {
     std::vector<std::string> set = options_.read.set;
     if (!whole) set.insert(set.end(), std::begin(tables_alone), std::end(tables_alone));
     const std::vector<std::string> values = plan_.design.values(run);
@@ -127,6 +127,10 @@ class Runner {
     if (!whole)
       for (const Response& r : plan_.responses)
         o.only_files.push_back(file_of(r));
+    if (meanings)
+      o.seen_table = [meanings](std::string_view name, const io::Table& table) {
+        (*meanings)[std::string(name)] = {table.nan_means, table.nan_is_absence};
+      };
     read_again_in(o, deck_, set);
     return steps::run_deck(deck_.load(set), o);
   }

@@ -361,6 +361,40 @@ TEST_F(Sweep, EffectsOfSamplesThatMissTheirDistributionAreWithheld) {
   EXPECT_NE(read("s/sweep.html").find("of the distribution only"), std::string::npos);
 }
 
+// The amplification of a mode that grows is none, and the largest of all is not that of the others.
+TEST_F(Sweep, AnUnstableRotorIsNoGoodOne) {
+  std::ofstream(folder_ / "d.toml", std::ios::app)
+      << "[[bearing]]\nname = \"cc\"\nat = \"disk\"\ntype = \"cross_coupling\"\nk = \"1 N/m\"\n"
+         "[[step]]\nname = \"l\"\ntype = \"critical_speeds\"\nmax_speed = \"20000 rpm\"\n"
+         "motion = \"lateral\"\n";
+  ASSERT_EQ(
+      whirl("sweep d.toml -o s --vary 'bearing.cc.k=1 N/m,1e6 N/m' "
+            "--response 'a=l_damped:amplification:max' --response 'ld=l_damped:log decrement:min'"),
+      0)
+      << log_;
+  const io::Columns runs = io::read_csv(folder_ / "s/sweep.csv");
+  EXPECT_GT(runs["ld"][0], 0);
+  EXPECT_LT(runs["ld"][1], 0);
+  EXPECT_GT(runs["a"][0], 0);
+  EXPECT_TRUE(std::isnan(runs["a"][1]));
+  EXPECT_NE(read("s/sweep.csv").find("rows: without damping the amplification has no limit"),
+            std::string::npos)
+      << read("s/sweep.csv");
+}
+
+TEST_F(Sweep, ModesThatAreNotThereArePassedBy) {
+  std::ofstream(folder_ / "d.toml", std::ios::app)
+      << "[[step]]\nname = \"k\"\ntype = \"critical_map\"\nmax_speed = \"9000 rpm\"\n"
+         "stiffness_min = \"1e4 N/m\"\nstiffness_max = \"1e9 N/m\"\n";
+  ASSERT_EQ(whirl("run d.toml -q -o one"), 0) << log_;
+  ASSERT_TRUE(std::isnan(io::read_csv(folder_ / "one/k_critical_map.csv")["critical 2"].back()));
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary disk.disk.mass=3kg "
+                  "--response 'x=k_critical_map:critical 2:max'"),
+            0)
+      << log_;
+  EXPECT_GT(io::read_csv(folder_ / "s/sweep.csv")["x"][0], 2600);
+}
+
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   const std::string response = " --response c_undamped:speed";
   for (const std::string& arguments :

@@ -67,7 +67,7 @@ TEST(SweepResponses, PickNumbersOutOfTables) {
   const fs::path folder =
       fs::temp_directory_path() / ("whirl_answers_" + std::to_string(::getpid()));
   fs::create_directories(folder);
-  std::ofstream(folder / "t.csv") << "name [-],speed [rpm]\na,-3\nb,nan\nc,2\n";
+  std::ofstream(folder / "t.csv") << "name [-],speed [rpm],gap\na,-3,1\nb,1,nan\nc,2,2\n";
   const auto value = [&](const char* text) { return answer(read_response(text), folder); };
   EXPECT_EQ(value("t:speed").value, -3);
   EXPECT_EQ(value("t:speed").unit, "rpm");
@@ -76,8 +76,8 @@ TEST(SweepResponses, PickNumbersOutOfTables) {
   EXPECT_EQ(value("t:speed:min").value, -3);
   EXPECT_EQ(value("t:speed:max").value, 2);
   EXPECT_EQ(value("t:speed:absmax").value, 3);
-  EXPECT_EQ(value("t:speed:mean").value, -0.5);
-  for (const char* text : {"t:speed:2", "t:speed:4", "t:sped", "u:speed", "t:name:max"})
+  EXPECT_EQ(value("t:speed:mean").value, 0);
+  for (const char* text : {"t:gap:2", "t:speed:4", "t:sped", "u:speed", "t:name:max"})
     EXPECT_FALSE(value(text).failure.empty()) << text;
   EXPECT_EQ(value("t:name").word, "a");
   EXPECT_EQ(value("t:name:last").word, "c");
@@ -95,6 +95,46 @@ TEST(SweepResponses, PickNumbersOutOfTables) {
   for (const char* text : {"t", ":speed", "t:", "t:speed:0", "t:speed:first", "../t:speed", "=t:x"})
     EXPECT_THROW(read_response(text), Error) << text;
   fs::remove_all(folder);
+}
+
+class ReducedColumns : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("whirl_reduced_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "t.csv")
+        << "a [-],b [-],c [-],d [-]\n1,1,nan,1\nnan,,nan,inf\n3,3,nan,2\nnan,word,nan,3\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  Answer value(const std::string& text, const NanMeaning& nan = {}) const {
+    return answer(read_response(text), folder_, {{"t.csv", nan}});
+  }
+  fs::path folder_;
+};
+
+TEST_F(ReducedColumns, HaveNoValueWhereARowHasNone) {
+  for (const char* pick : {"min", "max", "absmax", "mean"}) {
+    const Answer a = value(std::string("t:a:") + pick, {"it is unstable", false});
+    EXPECT_TRUE(std::isnan(a.value)) << pick;
+    EXPECT_EQ(a.failure, "no finite value in 2 of 4 rows: it is unstable") << pick;
+  }
+  EXPECT_EQ(value("t:a:max").failure, "no finite value in 2 of 4 rows");
+}
+
+TEST_F(ReducedColumns, PassRowsByThatHaveNothingToGive) {
+  EXPECT_EQ(value("t:a:max", {"no such mode", true}).value, 3);
+  EXPECT_EQ(value("t:a:mean", {"no such mode", true}).value, 2);
+  EXPECT_EQ(value("t:c:max", {"no such mode", true}).failure,
+            "no value in the column is finite: no such mode");
+}
+
+TEST_F(ReducedColumns, TakeAnEmptyCellForNothingAndAWordForNoValue) {
+  EXPECT_EQ(value("t:b:max").failure, "no finite value in 1 of 4 rows");
+}
+
+TEST_F(ReducedColumns, HaveNoValueWhereARowIsInfinite) {
+  EXPECT_EQ(value("t:d:min", {"no such mode", true}).failure,
+            "no finite value in 1 of 4 rows: no such mode");
 }
 
 TEST(SweepRows, WordsComeBack) {
