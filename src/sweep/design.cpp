@@ -239,6 +239,26 @@ Factor read_factor(const std::string& text) {
   return f;
 }
 
+namespace {
+
+/// The cells of a column of runs as values of a factor, whose unit is that of the heading where it has one.
+void read_column(const std::string& text, std::vector<std::string> cells, Factor& f) {
+  if (f.unit.empty()) {
+    read_list(text, cells, f);
+    return;
+  }
+  for (std::string& cell : cells) {
+    const Number n = number_of(cell);
+    if (n.ok && !n.unit.empty())
+      throw bad_factor(text, fmt::format("'{}' has a unit, and its heading has '{}'", cell, f.unit),
+                       "write the unit in the heading alone, or in the cells alone");
+    cell += " " + f.unit;
+  }
+  f.values = std::move(cells);
+}
+
+}  // namespace
+
 std::vector<Factor> read_runs(const std::filesystem::path& file, int number) {
   const auto refuse = [&](const std::string& problem) {
     return bad_factor("@" + file.string(), problem,
@@ -256,12 +276,16 @@ std::vector<Factor> read_runs(const std::filesystem::path& file, int number) {
     f.unit = title.unit == "-" ? "" : title.unit;
     f.file = number;
     if (f.path.empty()) throw refuse(fmt::format("column {} has no heading", k + 1));
+    std::vector<std::string> cells;
     for (const auto& row : table.rows) {
-      if (row.size() != table.header.size() || row[k].text.empty())
+      if (row.size() != table.header.size())
         throw refuse(fmt::format("line {}: {} values where {} belong", row[0].line, row.size(),
                                  table.header.size()));
-      f.values.push_back(f.unit.empty() ? row[k].text : row[k].text + " " + f.unit);
+      if (row[k].text.empty())
+        throw refuse(fmt::format("line {}: the cell of '{}' is empty", row[0].line, f.path));
+      cells.push_back(row[k].text);
     }
+    read_column(fmt::format("@{}: {}", file.string(), f.path), std::move(cells), f);
     factors.push_back(std::move(f));
   }
   return factors;

@@ -49,7 +49,7 @@ struct Factor : Distribution {
 Factor read_factor(const std::string& text);
 
 /// The columns of a file as factors that go row by row, together: headings are keys, with their
-/// unit in brackets or not. number: of the file.
+/// unit in brackets or not; without it the cells have one, as values of a list do. number: of the file.
 /// @throws Error (E99, Exit::usage); Exit::io
 std::vector<Factor> read_runs(const std::filesystem::path& file, int number);
 

@@ -79,6 +79,45 @@ TEST(SweepDesign, ListsOfAFileGoTogether) {
   std::filesystem::remove(file);
 }
 
+/// Runs of a file of this text; what stands against it.
+class FileOfRuns : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(file_); }
+  std::vector<Factor> read(const std::string& text) const {
+    std::ofstream(file_) << text;
+    return read_runs(file_, 0);
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const Error& e) {
+      return e.diagnostics().front().message;
+    }
+    return "none";
+  }
+  const std::filesystem::path file_ = std::filesystem::temp_directory_path() /
+                                      ("whirl_file_of_runs_" + std::to_string(::getpid()) + ".csv");
+};
+
+TEST_F(FileOfRuns, TakesTheUnitOfItsCells) {
+  const std::vector<Factor> f = read("p.P,d.m\n900 N,1\n1000,2\n1200 N,3\n");
+  EXPECT_EQ(f[0].unit, "N");
+  EXPECT_EQ(f[0].values, (std::vector<std::string>{"900 N", "1000 N", "1200 N"}));
+  EXPECT_EQ(f[1].unit, "");
+}
+
+TEST_F(FileOfRuns, HasOneUnitAColumn) {
+  EXPECT_NE(refusal("p.P,d.m\n900 N,1\n1 kN,2\n").find("p.P': units 'N' and 'kN' in one list"),
+            std::string::npos);
+  EXPECT_NE(refusal("p.P [N]\n900 N\n").find("'900 N' has a unit, and its heading has 'N'"),
+            std::string::npos);
+}
+
+TEST_F(FileOfRuns, SaysWhichCellIsEmpty) {
+  EXPECT_NE(refusal("a,b\n1,2\n3,\n").find("line 3: the cell of 'b' is empty"), std::string::npos);
+  EXPECT_NE(refusal("a,b\n1,2\n3\n").find("line 3: 1 values where 2 belong"), std::string::npos);
+}
+
 TEST(SweepDesign, RefusesSchemesAndCorrelationsThatCannotBe) {
   const Factor list = read_factor("a=1,2"), x = read_factor("x=uniform(0, 1)"),
                y = read_factor("y=uniform(0, 1)"), z = read_factor("z=uniform(0, 1)"),
