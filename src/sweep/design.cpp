@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 namespace whirl::sweep {
 namespace {
@@ -452,8 +453,12 @@ void Design::correlate(const std::vector<Correlation>& correlations) {
              "keys as --vary has them, with a distribution each");
     return static_cast<Index>(it - paths.begin());
   };
+  std::set<std::pair<Index, Index>> given;
   for (const Correlation& c : correlations) {
     const Index a = place(c.first), b = place(c.second);
+    if (!given.insert(std::minmax(a, b)).second)
+      refuse(fmt::format("'{}' and '{}' are correlated twice", c.first, c.second),
+             "one --correlation a pair");
     r(a, b) = r(b, a) = c.value;
   }
   const Eigen::LLT<MatX> factor(r);

@@ -76,7 +76,7 @@ class Design {
   /// samples: of the distributions, N of a scheme of sensitivity; 1 without any.
   /// @throws Error (E99, Exit::usage): samples without a distribution or the other way round, a key
   /// twice, more than ten distributions for Sobol's points, lists beside a scheme of sensitivity,
-  /// correlations that cannot be, more than 1e9 runs
+  /// correlations that cannot be or are given twice, more than 1e9 runs
   Design(std::vector<Factor> factors, std::int64_t samples, Sampling sampling, std::uint64_t seed,
          const std::vector<Correlation>& correlations = {});
   std::int64_t runs() const { return combinations_ * samples_; }

@@ -132,6 +132,7 @@ TEST(SweepDesign, RefusesSchemesAndCorrelationsThatCannotBe) {
   };
   EXPECT_NO_THROW(with({{"x", "y", 0.5}}));
   EXPECT_THROW(with({{"x", "a", 0.5}}), Error);
+  EXPECT_THROW(with({{"x", "y", 0.9}, {"y", "x", 0.5}}), Error);
   EXPECT_THROW(with({{"x", "y", 0.9}, {"y", "z", 0.9}, {"x", "z", -0.9}}), Error);
   for (const char* text : {"x=0.5", "x,y", "x,y=1", "x,x=0.5", "x,y=0.5 mm", "x,y,z=0.1"})
     EXPECT_THROW(read_correlation(text), Error) << text;
