@@ -350,6 +350,28 @@ bool every_response_answered(const std::map<std::int64_t, Row>& rows) {
   return std::find(answered.begin(), answered.end(), false) == answered.end();
 }
 
+/// A parameter that is varied is one of the deck.
+/// @throws Error (E99)
+void require_used(const Plan& plan, const std::vector<Diagnostic>& warnings) {
+  for (const Factor& f : plan.design.factors()) {
+    constexpr std::string_view head = "parameters.";
+    if (!f.path.starts_with(head)) continue;
+    const std::string name = f.path.substr(head.size());
+    const auto is_unused = [&name](const Diagnostic& d) {
+      return d.code == "W01" && d.message.find("'" + name + "'") != std::string::npos;
+    };
+    if (std::none_of(warnings.begin(), warnings.end(), is_unused)) continue;
+    throw Error(
+        Exit::usage,
+        Diagnostic{Diagnostic::Severity::error, "E99",
+                   fmt::format("--vary '{}': no key of the deck has this parameter", f.path),
+                   fmt::format("write \"${{{}}}\" in the deck where its values belong, or the "
+                               "name of the parameter that is meant",
+                               name),
+                   Where{}});
+  }
+}
+
 /// The keys that are varied are there. What is wrong with their values is for the rows to say.
 void require_keys(const SweepOptions& options, const Plan& plan) {
   deck::ReadOptions read = options.read;
@@ -357,7 +379,7 @@ void require_keys(const SweepOptions& options, const Plan& plan) {
   for (std::size_t k = 0; k < values.size(); ++k)
     read.set.push_back(plan.design.factors()[k].path + "=" + values[k]);
   try {
-    deck::load_model(options.deck, read);
+    require_used(plan, deck::load_model(options.deck, read).warnings);
   } catch (const Error& e) {
     const auto& problems = e.diagnostics();
     const bool unknown = std::any_of(problems.begin(), problems.end(),

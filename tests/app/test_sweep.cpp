@@ -409,10 +409,24 @@ TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   EXPECT_NE(log_.find("E99"), std::string::npos);
 }
 
+TEST_F(Sweep, AParameterThatNoKeyHasIsRefused) {
+  std::ofstream(folder_ / "d.toml")
+      << unbalanced_rotor << steps << "[parameters]\nP = \"1 kg\"\nunused = \"1 kg\"\n";
+  for (const char* name : {"Q", "unused"}) {
+    EXPECT_EQ(
+        whirl(std::string("sweep d.toml -o s --set 'disk.disk.mass=${P}' --vary parameters.") +
+              name + "=2kg,3kg --response c_undamped:speed"),
+        2)
+        << log_;
+    EXPECT_NE(log_.find("no key of the deck has this parameter"), std::string::npos) << log_;
+  }
+}
+
 // Words of --vary and names of responses stand in cells that spreadsheets read.
 TEST_F(Sweep, NoCellIsAFormula) {
   std::ofstream(folder_ / "d.toml") << unbalanced_rotor << steps << "[parameters]\nnote = \"x\"\n";
-  const std::string vary = " --vary 'parameters.note=@SUM(A1:A9),=1+1,-x,plain'";
+  const std::string vary =
+      " --set 'title=${note}' --vary 'parameters.note=@SUM(A1:A9),=1+1,-x,plain'";
   EXPECT_EQ(whirl("sweep d.toml -o s" + vary + " --response '@SUM(A1)=c_undamped:speed:1'"), 2);
   EXPECT_NE(log_.find("spreadsheets"), std::string::npos) << log_;
   ASSERT_EQ(whirl("sweep d.toml -o s" + vary + " --response 'c=c_undamped:speed:1'"), 0) << log_;
