@@ -231,8 +231,13 @@ double at(const Column* c, std::size_t row, double absent) {
 std::string coefficient_table(const CellTable& cells, Notes& notes) {
   const auto columns = TableReader(cells, coefficient_meanings(), notes).read();
   const Column *speed = find(columns, "speed"), *frequency = find(columns, "frequency");
-  if (!speed) std::swap(speed, frequency);  // synchronous: one stands for the other
-  if (!speed) notes.refuse("there is no column of speeds", "a title like 'speed [rpm]'");
+  if (!speed && !frequency)
+    notes.refuse("there is no column of speeds", "a title like 'speed [rpm]'");
+  if (!speed) {
+    notes.say("there is no column of speeds: every frequency is taken for that of the rotation",
+              "coefficients at a frequency of the motion need a column 'speed [rpm]' beside it");
+    std::swap(speed, frequency);
+  }
   std::string out = frequency ? "speed[rpm],frequency[Hz]" : "speed[rpm]";
   std::vector<std::pair<const Column*, const char*>> shown;
   for (const Column& c : columns) {

@@ -458,9 +458,13 @@ TEST(Convert, CoefficientsKeepTheirFrequencies) {
       "speed[rpm],frequency[Hz],Kxx[N/m]\n3000,50,4\n1000,100,2\n3000,100,5\n1000,50,1\n", "h.csv");
   EXPECT_EQ(c.text,
             "speed[rpm],frequency[Hz],kyy[N/m]\n1000,50,1\n1000,100,2\n3000,50,4\n3000,100,5\n");
-  // synchronous ones have one of the two
-  EXPECT_EQ(convert::convert_csv("frequency[Hz],Kxx[N/m]\n50,4\n", "h.csv").text,
-            "speed[rpm],kyy[N/m]\n3000,4\n");
+}
+
+TEST(Convert, FrequenciesWithoutSpeedsAreSaidToBeSynchronous) {
+  const Converted c = convert::convert_csv("frequency[Hz],Kxx[N/m]\n50,4\n", "h.csv");
+  EXPECT_EQ(c.text, "speed[rpm],kyy[N/m]\n3000,4\n");
+  EXPECT_TRUE(says(c, "every frequency is taken for that of the rotation"));
+  EXPECT_FALSE(says(convert::convert_csv("speed[rpm],Kxx[N/m]\n50,4\n", "h.csv"), "frequency"));
 }
 
 TEST(Convert, TablesOfThisProgramAreNamed) {
