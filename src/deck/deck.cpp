@@ -219,6 +219,8 @@ model::Model ParsedDeck::load(const std::vector<std::string>& set) const {
   return model_of(read(set));
 }
 
+std::string ParsedDeck::entry(const std::string& path) const { return entry_of(document_, path); }
+
 Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
   Deck deck;
   if (auto problem = read_text_of(file, deck.sources))

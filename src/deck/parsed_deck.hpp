@@ -17,6 +17,9 @@ class ParsedDeck {
   /// As load_model() with these overrides.
   /// @throws Error (Exit::deck or Exit::io)
   model::Model load(const std::vector<std::string>& set) const;
+  /// Of a path as --set has it: the same for what names the same entry ("disk.0.mass",
+  /// "disk.wheel.mass").
+  std::string entry(const std::string& path) const;
 
  private:
   std::filesystem::path file_;

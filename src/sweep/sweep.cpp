@@ -372,6 +372,21 @@ void require_used(const Plan& plan, const std::vector<Diagnostic>& warnings) {
   }
 }
 
+/// No key is varied under two names.
+/// @throws Error (E99)
+void require_different(const SweepOptions& options, const Plan& plan) {
+  const deck::ParsedDeck deck(options.deck, options.read.files_allowed);
+  std::map<std::string, std::string> names;
+  for (const Factor& f : plan.design.factors()) {
+    const auto [other, is_new] = names.emplace(deck.entry(f.path), f.path);
+    if (!is_new)
+      throw Error(Exit::usage,
+                  Diagnostic{Diagnostic::Severity::error, "E99",
+                             fmt::format("'{}' and '{}' are one key", other->second, f.path),
+                             "one --vary a key", Where{}});
+  }
+}
+
 /// The keys that are varied are there. What is wrong with their values is for the rows to say.
 void require_keys(const SweepOptions& options, const Plan& plan) {
   deck::ReadOptions read = options.read;
@@ -424,6 +439,7 @@ int lead(const SweepOptions& options, const Plan& plan, const model::Model& mode
   try {
     check_limits(options, plan, model);
     require_keys(options, plan);
+    require_different(options, plan);
     lock = prepare_folder(plan, options.run.resume);
   } catch (...) {
     if (ranks) ranks->agree(false);

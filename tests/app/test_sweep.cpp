@@ -409,6 +409,21 @@ TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   EXPECT_NE(log_.find("E99"), std::string::npos);
 }
 
+TEST_F(Sweep, AKeyUnderTwoNamesIsRefused) {
+  const std::string response = " --response c_undamped:speed";
+  for (const char* name : {"disk.0.mass", "disk.\"disk\".mass"}) {
+    EXPECT_EQ(whirl("sweep d.toml -o s --vary disk.disk.mass=2kg,3kg --vary '" + std::string(name) +
+                    "=4kg,5kg'" + response),
+              2)
+        << log_;
+    EXPECT_NE(log_.find("are one key"), std::string::npos) << log_;
+  }
+  EXPECT_EQ(
+      whirl("sweep d.toml -o s --vary bearing.A.kyy=2e6N/m --vary bearing.1.kyy=3e6N/m" + response),
+      0)
+      << log_;
+}
+
 TEST_F(Sweep, AParameterThatNoKeyHasIsRefused) {
   std::ofstream(folder_ / "d.toml")
       << unbalanced_rotor << steps << "[parameters]\nP = \"1 kg\"\nunused = \"1 kg\"\n";

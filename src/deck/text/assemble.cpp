@@ -154,6 +154,9 @@ class Override {
         line_(line),
         diagnostics_(diagnostics) {}
 
+  /// Of the path that was applied: its parts, members of lists by their numbers.
+  const std::string& entry() const { return entry_; }
+
   void apply() {
     equal_ = argument_.find('=');
     if (equal_ == std::string::npos || equal_ == 0) {
@@ -253,6 +256,7 @@ class Override {
                              : fmt::format("known: {}", fmt::join(names, ", ")));
       return nullptr;
     }
+    entry_ += fmt::format("[{}]", found - at.items.data());
     if (end < equal_) return found;
     *found = value_;
     return nullptr;
@@ -260,6 +264,7 @@ class Override {
 
   Value* into_table(Value& at, const std::string& part, std::size_t begin, std::size_t end) {
     Member* m = at.find(part);
+    entry_ += "." + part;
     if (end < equal_) {
       if (!m) m = &at.add(part, Value::make_table(spot(begin, end)), spot(begin, end));
       return &m->value;
@@ -279,6 +284,7 @@ class Override {
   Diagnostics& diagnostics_;
   std::size_t equal_ = 0;  ///< place of the '='
   std::string above_;      ///< the part of the path before this one
+  std::string entry_;
   Value value_;
 };
 
@@ -298,6 +304,13 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
     const int line = static_cast<int>(k) + 1;
     Override(document, std::string(sources.line(source, line)), source, line, diagnostics).apply();
   }
+}
+
+std::string entry_of(Document document, const std::string& path) {
+  Diagnostics ignored;
+  Override one(document, path + "=0", 0, 1, ignored);
+  one.apply();
+  return one.entry();
 }
 
 }  // namespace whirl::deck

@@ -17,6 +17,10 @@ Document assemble(Sources& sources, Diagnostics& diagnostics, const AssembleOpti
 void apply_overrides(Document& document, const std::vector<std::string>& arguments,
                      Sources& sources, Diagnostics& diagnostics);
 
+/// Of a path as --set has it, with the members of lists by their numbers: the same for what names the
+/// same entry. A path that leads nowhere: as far as it leads.
+std::string entry_of(Document document, const std::string& path);
+
 /// Whether a file that a deck names may be read. Messages quote what they are about, so that a deck
 /// from somebody else could show the user's private files to whoever sees its messages: outside the
 /// deck's own folder only names with one of the extensions are read.
