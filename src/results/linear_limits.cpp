@@ -237,6 +237,7 @@ std::vector<double> speeds_to_judge(const run::Job& job, const std::vector<doubl
   const std::vector<double> rows = table_speeds_between(job, first, last);
   out.insert(out.end(), rows.begin(), rows.end());
   std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
