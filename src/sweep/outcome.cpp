@@ -204,6 +204,7 @@ io::Table part_of(const io::Table& table, std::string title,
     part.columns.push_back(table.columns[k]);
   for (const auto& row : table.rows) {
     std::vector<io::Table::Cell> cells;
+    cells.reserve(columns.size());
     for (const std::size_t k : columns)
       cells.push_back(row[k]);
     part.add(std::move(cells));

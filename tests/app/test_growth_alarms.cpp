@@ -412,7 +412,7 @@ report = false
       "load 'process', 'motor' twists a shaft by a moment that has no potential";
   EXPECT_TRUE(load.says("m: assumed: " + named)) << load.log;
   EXPECT_TRUE(load.says("s: assumed: " + named)) << load.log;
-  EXPECT_TRUE(load.says("does beyond it; " + named)) << load.log;
+  EXPECT_TRUE(load.says("does there; " + named)) << load.log;
   const DeckRun drive(
       deck("[[drive]]\nat = \"imp\"\ntype = \"torque\"\ntorque = \"2000 N.m\"\n"
            "[[drive]]\nat = \"a:start\"\ntype = \"torque\"\ntorque = \"-2000 N.m\"\n"));
