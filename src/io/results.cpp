@@ -108,7 +108,7 @@ TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks) {
   return std::make_unique<Tee>(std::move(sinks));
 }
 
-TimeSeriesPtr make_hdf5_series(fs::path file, SeriesOptions options) {
+TimeSeriesPtr make_hdf5_series(const fs::path& file, SeriesOptions options) {
   TimeSeriesPtr sink(
       Plugin::load("hdf5").function<Hdf5MakeSeries>(hdf5_make_series)(file, options));
   return std::make_unique<Watched>(file.filename().string(), std::move(sink));

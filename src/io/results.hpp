@@ -72,7 +72,7 @@ TimeSeriesPtr make_csv_series(std::filesystem::path file, SeriesOptions options 
 /// HDF5 (plug-in, loaded by this call): one compressed rows x columns data set a group; the file
 /// explains itself in its attribute "layout".
 /// @throws Error (Exit::io) when the plug-in was not built.
-TimeSeriesPtr make_hdf5_series(std::filesystem::path file, SeriesOptions options = {});
+TimeSeriesPtr make_hdf5_series(const std::filesystem::path& file, SeriesOptions options = {});
 
 /// Sends every row to several sinks.
 TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks);

@@ -40,7 +40,7 @@ bool is_absent(const io::TableFile::Column& column, std::size_t row, const NanMe
   return is_text ? column.texts[row].empty() : nan.absence;
 }
 
-std::string with_meaning(std::string failure, const NanMeaning& nan) {
+std::string with_meaning(const std::string& failure, const NanMeaning& nan) {
   return nan.text.empty() ? failure : failure + ": " + nan.text;
 }
 
