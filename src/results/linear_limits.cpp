@@ -80,9 +80,11 @@ class Growth {
     return !mode.oscillates() || !(mesh_.of(mode, Omega, "") > coarse);
   }
   static FreeGrowth growth_of(const analysis::WhirlMode& mode) {
-    return {mode.lambda.real(),
-            fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(mode.kind),
-                        to_hz(mode.frequency), mode.lambda.real())};
+    FreeGrowth out;
+    out.rate = mode.lambda.real();
+    out.text = fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(mode.kind),
+                           to_hz(mode.frequency), mode.lambda.real());
+    return out;
   }
 
   FrequencyStep& step_;
@@ -126,26 +128,31 @@ std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
   return std::nullopt;
 }
 
-/// @throws e unless it says that a table of frequencies ends: modes below one that reaches the excitation.
-void warn_of_unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
+/// W13. @throws e unless it says that a table of frequencies ends: modes below one that reaches the excitation.
+FreeGrowth unknown_growth(FrequencyStep& s, double Omega, const Error& e) {
   if (e.diagnostics().front().code != "E81") throw e;
+  FreeGrowth out;
+  out.judged = false;
+  out.open = fmt::format("whether free motions grow at {:.6g} rpm is not known", to_rpm(Omega));
   Diagnostic d;
   d.code = "W13";
-  d.message = fmt::format("step '{}': whether free motions grow at {:.6g} rpm is not known: {}",
-                          s.step.name, to_rpm(Omega), e.diagnostics().front().message);
+  d.message =
+      fmt::format("step '{}': {}: {}", s.step.name, out.open, e.diagnostics().front().message);
   d.hint = "extend the frequencies of the table, or write extrapolate = \"hold\"";
   warn(s.job, std::move(d));
+  return out;
 }
 
 /// counted_to: as of band_among().
 FreeGrowth growth_in_band(FrequencyStep& s, const std::vector<double>& speeds, double& counted_to) {
   std::optional<analysis::InstabilityBand> band;
+  FreeGrowth none;
   try {
     band = band_among(s, speeds, counted_to);
   } catch (const Error& e) {
-    warn_of_unknown_growth(s, speeds.back(), e);
+    none = unknown_growth(s, speeds.back(), e);
   }
-  if (!band) return {};
+  if (!band) return none;
   const double sense = speeds.front() < 0.0 ? -1.0 : 1.0;
   const auto edge = [sense](double Omega, const char* beyond, double last) {
     return std::isnan(Omega) ? fmt::format("{} {:.6g}", beyond, to_rpm(last))
@@ -153,14 +160,16 @@ FreeGrowth growth_in_band(FrequencyStep& s, const std::vector<double>& speeds, d
   };
   const auto [least, most] = std::minmax_element(
       speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return {band->growth,
-          fmt::format("the rotor, whose {} turns with it, is unstable from {} to {} rpm ({})",
-                      what_turns(s.job.model), edge(band->low, "below", *least),
-                      edge(band->high, "above", *most),
-                      band->frequency > 1e-6 * band->speed
-                          ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm", band->growth,
-                                        to_rpm(sense * band->speed))
-                          : "it bends out at its own speed")};
+  FreeGrowth out;
+  out.rate = band->growth;
+  out.text = fmt::format("the rotor, whose {} turns with it, is unstable from {} to {} rpm ({})",
+                         what_turns(s.job.model), edge(band->low, "below", *least),
+                         edge(band->high, "above", *most),
+                         band->frequency > 1e-6 * band->speed
+                             ? fmt::format("a motion grows by {:.3g} 1/s at {:.6g} rpm",
+                                           band->growth, to_rpm(sense * band->speed))
+                             : "it bends out at its own speed");
+  return out;
 }
 
 }  // namespace
@@ -256,6 +265,10 @@ FreeGrowth growth_in_bands(FrequencyStep& s, const std::vector<double>& speeds,
     const FreeGrowth found = growth_in_band(s, sense, counted);
     if (!found.text.empty()) all.text += (all.text.empty() ? "" : "; ") + found.text;
     all.rate = std::max(all.rate, found.rate);
+    if (!found.judged) {
+      all.judged = false;
+      all.open = found.open;
+    }
     counted_to = std::min(counted_to, counted);
   }
   return all;
@@ -264,6 +277,7 @@ FreeGrowth growth_in_bands(FrequencyStep& s, const std::vector<double>& speeds,
 /// At speeds one by one; of_the_mean: over a revolution.
 FreeGrowth growth_at_speeds(FrequencyStep& s, const std::vector<double>& speeds,
                             Growth& free_motions, bool of_the_mean) {
+  FreeGrowth none;
   for (const double Omega : speeds) {
     try {
       FreeGrowth growth = free_motions.at(Omega);
@@ -275,15 +289,15 @@ FreeGrowth growth_at_speeds(FrequencyStep& s, const std::vector<double>& speeds,
           to_rpm(Omega), growth.text);
       return growth;
     } catch (const Error& e) {
-      warn_of_unknown_growth(s, Omega, e);
+      if (none.judged) none = unknown_growth(s, Omega, e);  // said once, looked for on
     }
-    return {};
   }
-  if (free_motions.known_to() == infinity) return {};
+  if (!none.judged || free_motions.known_to() == infinity) return none;
   const double top = to_hz(free_motions.known_to());
   s.summary()["growth not excluded above [Hz]"] = top;
-  s.say_also(fmt::format("growth above {:.5g} Hz not excluded", top));
-  return {};
+  none.open = fmt::format("growth above {:.5g} Hz not excluded", top);
+  s.say_also(none.open);
+  return none;
 }
 
 }  // namespace
@@ -295,13 +309,13 @@ FreeGrowth find_growth(FrequencyStep& s, std::vector<double> speeds, analysis::M
   double counted_to = infinity;
   const bool turns = bends && s.turns_as_one() &&
                      (turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model));
-  if (turns) {
-    FreeGrowth bands = growth_in_bands(s, speeds, counted_to);
-    if (!bands.text.empty()) return bands;
-  }
+  FreeGrowth bands;
+  if (turns) bands = growth_in_bands(s, speeds, counted_to);
+  if (!bands.text.empty()) return bands;
   // what turns joins slow motions alone: what bends faster grows as with the mean
   Growth free_motions(s, turns ? analysis::Motion::lateral : motion, turns ? counted_to : 0.0);
-  return growth_at_speeds(s, speeds, free_motions, turns);
+  const FreeGrowth all = growth_at_speeds(s, speeds, free_motions, turns);
+  return all.text.empty() && !bands.judged ? bands : all;
 }
 
 bool warn_of_growth(FrequencyStep& s, std::vector<double> speeds, analysis::Motion motion) {

@@ -108,8 +108,10 @@ void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
 struct FreeGrowth {
   double rate = 0;   ///< 1/s; 0: nothing grows, as far as is known
   std::string text;  ///< "the rotor is unstable at 5000 rpm (..)"
+  std::string open;  ///< what is not known where nothing grows: "growth above 540 Hz not excluded"
+  bool judged = true;  ///< false: at one of the speeds nothing is known
 };
-/// At one of these speeds (reference, rad/s), the first found; what is not known is said by the step.
+/// At one of these speeds (reference, rad/s), the first found. W13 where nothing is known.
 FreeGrowth find_growth(FrequencyStep& s, std::vector<double> speeds,
                        analysis::Motion motion = analysis::Motion::all);
 /// W13: where one does the steady response is never reached. Whether one does.

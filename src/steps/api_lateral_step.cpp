@@ -597,11 +597,13 @@ void SetReport::judge_growth() {
       results::speeds_to_judge(sub, {law_.operating[0], law_.operating[1]});
   const results::FreeGrowth grows = results::find_growth(frequency, speeds);
   Check c = results::compare("growth in operation", grows.rate, "1/s", Check::Rule::at_most, 0.0);
-  c.remark = grows.text;
+  c.judged = grows.judged || !grows.text.empty();
+  c.remark = grows.text.empty() ? grows.open : grows.text;
   add(std::move(c),
       fmt::format("{} speeds, {:.5g} to {:.5g} rpm", speeds.size(), to_rpm(law_.operating[0]),
                   to_rpm(law_.operating[1])),
       "", "");
+  close(sub, "free motions in operation");
 }
 
 void SetReport::execute() {

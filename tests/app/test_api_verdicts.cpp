@@ -2,6 +2,7 @@
 // torsional mode that is not among those asked for.
 #include "deck_run.hpp"
 #include "flat_rotor.hpp"
+#include "sealed_rotor.hpp"
 
 #include <fmt/format.h>
 
@@ -310,52 +311,13 @@ points = 31
 // A seal that drives whirl at 5000 rpm alone (numpy: + 55.8 1/s at 54.3 Hz): levels 1 and 2 look at the highest
 // speed, 6400 rpm, and pass.
 TEST(ApiVerdicts, GrowthWithinTheOperatingSpeedsFails) {
-  const DeckRun r(R"(format = 1
-[output]
-report = false
-[[shaft]]
-name = "r"
-[[shaft.section]]
-name = "b"
-length = "1 m"
-rigid = true
-[[disk]]
-name = "d"
-at = "b:mid"
-mass = "50 kg"
-Ip = "2 kg.m^2"
-Id = "4 kg.m^2"
-[[bearing]]
-name = "A"
-at = "b:start"
-type = "linear"
-kxx = "1e8 N/m"
-kyy = "2e6 N/m"
-kzz = "2e6 N/m"
-cyy = "5000 N.s/m"
-czz = "5000 N.s/m"
-[[bearing]]
-name = "B"
-at = "b:end"
-type = "linear"
-kyy = "2e6 N/m"
-kzz = "2e6 N/m"
-cyy = "5000 N.s/m"
-czz = "5000 N.s/m"
-[[bearing]]
-name = "seal"
-at = "b:mid"
-type = "table"
-interpolation = "linear"
-columns = ["speed[rpm]", "kyy[N/m]", "kzz[N/m]", "kyz[N/m]", "kzy[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
-rows = [[100, 1e6, 1e6, 4e5, -4e5, 2000, 2000], [4000, 1e6, 1e6, 4e5, -4e5, 2000, 2000],
-        [5000, 1e6, 1e6, 6e6, -6e6, 2000, 2000], [6000, 1e6, 1e6, 6e5, -6e5, 2000, 2000],
-        [9000, 1e6, 1e6, 6e5, -6e5, 2000, 2000]]
-[[probe]]
-name = "p"
-at = "b:start"
-)" + api("\"4500 rpm\", \"6400 rpm\"",
-         "bearings = [\"A\", \"B\"]\nseals = [\"seal\"]\npoints = 31\n"));
+  const DeckRun r(whirl::test::sealed_rotor(
+      5000,
+      "[100, 1e6, 1e6, 4e5, -4e5, 2000, 2000], [4000, 1e6, 1e6, 4e5, -4e5, 2000, 2000], "
+      "[5000, 1e6, 1e6, 6e6, -6e6, 2000, 2000], [6000, 1e6, 1e6, 6e5, -6e5, 2000, 2000], "
+      "[9000, 1e6, 1e6, 6e5, -6e5, 2000, 2000]",
+      api("\"4500 rpm\", \"6400 rpm\"",
+          "bearings = [\"A\", \"B\"]\nseals = [\"seal\"]\npoints = 31\n")));
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_EQ(result_of(r, "level 2: log decrement"), "passed");
   EXPECT_EQ(result_of(r, "growth in operation"), "FAILED");

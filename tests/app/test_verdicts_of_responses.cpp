@@ -1,6 +1,7 @@
 // What a response and a stability step say of growth: neither what the mesh makes up nor silence about
 // what was not looked at.
 #include "deck_run.hpp"
+#include "sealed_rotor.hpp"
 
 using whirl::test::DeckRun;
 
@@ -189,40 +190,14 @@ speed = )" +
 
 // Whirl driven at one row of a table, between the speeds asked for: eigenvalues at 5000 rpm + 7.41 + 316.8 i.
 TEST(VerdictsOfResponses, RowsOfTablesBetweenTheSpeedsOfAStabilityStepAreLookedAt) {
-  std::string deck = R"(format = 1
-[output]
-report = false
-[[shaft]]
-name = "r"
-[[shaft.section]]
-name = "b"
-length = "1 m"
-rigid = true
-[[disk]]
-at = "b:mid"
-mass = "50 kg"
-Ip = "2 kg.m^2"
-Id = "4 kg.m^2"
-)";
-  for (const char* at : {"b:start", "b:end"})
-    deck += std::string("[[bearing]]\nat = \"") + at +
-            "\"\ntype = \"linear\"\nkxx = \"1e8 N/m\"\nkyy = \"2e6 N/m\"\nkzz = \"2e6 N/m\"\ncyy = "
-            "\"50 N.s/m\"\nczz = \"50 N.s/m\"\n";
-  deck += R"([[bearing]]
-name = "seal"
-at = "b:mid"
-type = "table"
-interpolation = "linear"
-columns = ["speed[rpm]", "kyy[N/m]", "kzz[N/m]", "kyz[N/m]", "kzy[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
-rows = [[1000, 1e6, 1e6, 0, 0, 2000, 2000], [4000, 1e6, 1e6, 5e4, -5e4, 2000, 2000],
-        [5000, 1e6, 1e6, 9e5, -9e5, 2000, 2000], [6000, 1e6, 1e6, 6e4, -6e4, 2000, 2000],
-        [8000, 1e6, 1e6, 6e4, -6e4, 2000, 2000]]
-[[step]]
-name = "s"
-type = "stability"
-speed = { values = ["1000 rpm", "4000 rpm", "8000 rpm"] }
-)";
-  const DeckRun r(deck);
+  const DeckRun r(whirl::test::sealed_rotor(
+      50,
+      "[1000, 1e6, 1e6, 0, 0, 2000, 2000], [4000, 1e6, 1e6, 5e4, -5e4, 2000, 2000], "
+      "[5000, 1e6, 1e6, 9e5, -9e5, 2000, 2000], [6000, 1e6, 1e6, 6e4, -6e4, 2000, 2000], "
+      "[8000, 1e6, 1e6, 6e4, -6e4, 2000, 2000]",
+      "[[step]]\nname = \"s\"\ntype = \"stability\"\nspeed = { values = [\"1000 rpm\", \"4000 "
+      "rpm\", "
+      "\"8000 rpm\"] }\n"));
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_TRUE(r.says("instability above 47")) << r.log;
   EXPECT_TRUE(r.says("stable again above 52")) << r.log;
