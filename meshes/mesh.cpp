@@ -286,10 +286,10 @@ class LineMesher {
       for (const double place : {here - step, here + step}) {
         // one that is nearly there already takes its part
         const double farther = here + 1.5 * (place - here);
-        const auto taken = [here, farther](double x) {
-          return x != here && (x - here) * (x - farther) <= 0.0;
+        const auto taken = [this, here, farther](double x) {
+          return std::abs(x - here) > tolerance_ && (x - here) * (x - farther) <= 0.0;
         };
-        if (place > a && place < b && !taken(a) && !taken(b) &&
+        if (place > a + tolerance_ && place < b - tolerance_ && !taken(a) && !taken(b) &&
             std::none_of(stations.begin(), stations.end(), taken))
           out.push_back(place);
       }
@@ -297,9 +297,10 @@ class LineMesher {
     return out;
   }
 
-  /// m; infinite where the section has no mass.
+  /// m; infinite where the section has no mass, or no crack can stand in it.
   double step_beside_crack(const Section& s, double from_left) const {
     constexpr double share_of_diameter = 0.05, least_share_of_shaft = 1e-3;
+    if (s.general || s.is_full()) return infinity;
     double diameter = s.od_l + (s.od_r - s.od_l) * from_left / s.length;
     if (s.constants) {
       if (!(s.constants->rhoA > 0)) return infinity;

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -312,6 +314,46 @@ modes = 2
     for (const std::size_t k : {0u, 1u})
       EXPECT_NEAR(coarse[k] / fine[k], 1.0, 2e-4) << od << " " << k;
   }
+}
+
+// So it is where sections meet whose lengths add up to the station of the crack but for rounding.
+TEST(Cracks, StationsStandBesideACrackWhereSectionsMeet) {
+  const DeckRun r(R"(format = 1
+[output]
+report = false
+[model.mesh]
+min_elements_per_section = 1
+[shaft]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 100, 50], ["b", 200, 50], ["c", 700, 50]]
+[[crack]]
+at = "0.3 m"
+depth = "20 mm"
+breathing = "open"
+[[bearing]]
+at = "0 m"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "1 m"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+name = "s"
+type = "static"
+speed = "0 rpm"
+)");
+  ASSERT_EQ(r.exit, 0) << r.log;
+  const Columns t = r.csv("s_deflection.csv");
+  std::vector<double> places;
+  for (const auto& row : t.rows)
+    places.push_back(row[t.column("s [m]")]);
+  for (const double place : {0.2975, 0.3025})
+    EXPECT_TRUE(std::any_of(places.begin(), places.end(), [&](double s) {
+      return std::abs(s - place) < 1e-9;
+    })) << place;
 }
 
 // A shaft of 1 m on two supports under 1000 N in the middle, where an open crack gives way like a hinge of
