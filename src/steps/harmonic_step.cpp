@@ -704,11 +704,11 @@ void HarmonicRun::warn_of_left_out() {
       if (is_driven && law_.motion != by)
         parts += (parts.empty() ? "" : " and ") + std::string(what);
     };
-    drop(d.lateral, model::MotionKind::lateral, "what acts across the shaft");
-    drop(d.torsional, model::MotionKind::torsional, "the moment about its axis");
-    drop(d.axial, model::MotionKind::axial, "the force along its axis");
+    drop(d.lateral, model::MotionKind::lateral, "acts across the shaft");
+    drop(d.torsional, model::MotionKind::torsional, "twists the shaft");
+    drop(d.axial, model::MotionKind::axial, "acts along the shaft");
     if (!parts.empty())
-      names += fmt::format("{}of {} {}", names.empty() ? "" : "; ",
+      names += fmt::format("{}what of {} {}", names.empty() ? "" : "; ",
                            f.name.empty() ? "a force" : "force '" + f.name + "'", parts);
   }
   if (names.empty()) return;
@@ -716,7 +716,7 @@ void HarmonicRun::warn_of_left_out() {
   d.code = "W02";
   d.where = s_.step.where;
   d.message =
-      fmt::format("step '{}' leaves out, with the motion they belong to: {}", s_.step.name, names);
+      fmt::format("step '{}' takes part of the motion only and leaves out {}", s_.step.name, names);
   d.hint = "motion = \"all\" takes them in";
   results::warn(job_, std::move(d));
 }
