@@ -157,7 +157,6 @@ class ModalRun {
 void ModalRun::solve() {
   const run::PhaseTimer timer(s_.job, "modes");
   analysis::ModesOptions o = options_;
-  std::size_t before = 0;
   while (true) {
     all_ = analysis::whirl_modes(s_.linear, law_.speed, o, &certificate_);
     modes_.clear();
@@ -165,8 +164,7 @@ void ModalRun::solve() {
                  [](const analysis::WhirlMode& m) { return m.oscillates(); });
     // what hardly oscillates stands in a list of its own, and takes no place in this one
     const Index missing = options_.count - static_cast<Index>(modes_.size());
-    if (missing <= 0 || all_.size() <= before) break;
-    before = all_.size();
+    if (missing <= 0 || static_cast<Index>(all_.size()) < o.count) break;
     o.count += missing;
   }
   labels_ = results::labels_of(modes_);
