@@ -59,7 +59,7 @@ TEST(MotionReduction, IsStaticCondensation) {
     const Index first = 6 * r.at(0) + system::ux;
     if (kxx == 0)
       m.K.block(m.K.pattern().diagonal(first / 6))(0, 0) -= 1e6;  // the spring taken away again
-    MotionReduction motion(s, Motion::lateral);
+    MotionReduction motion(s, Motion::lateral, {});
     const la::MCK& reduced = motion.reduce(m);
     EXPECT_EQ(motion.restraints().size(), kxx == 0 ? 2u : 1u);  // spin, and the axis
     std::vector<Index> l, f;
@@ -97,7 +97,7 @@ TEST(MotionReduction, WhatFollowsHasAStiffnessOfItsOwn) {
   la::MCK other = m;
   for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(other.K.value_count()); ++k)
     other.K.data()[k] *= 1.25;
-  MotionReduction motion(s, Motion::lateral);
+  MotionReduction motion(s, Motion::lateral, {});
   const la::MCK& reduced = motion.reduce(m, other.K);
   std::vector<Index> l, f;
   for (Index k = 0; k < s.size(); ++k)
@@ -116,7 +116,7 @@ TEST(MotionReduction, RestraintsFollowTheStiffness) {
   const la::MCK held = linear.at(30.0);
   la::MCK free = held;
   free.K.block(free.K.pattern().diagonal(r.at(0)))(0, 0) -= 1e6;
-  MotionReduction motion(s, Motion::lateral);
+  MotionReduction motion(s, Motion::lateral, {});
   for (int round = 0; round < 3; ++round) {
     motion.reduce(held);
     EXPECT_EQ(motion.restraints().size(), 1u);

@@ -71,7 +71,7 @@ double extent_of(const system::System& s) {
 
 HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
     : linear_(linear),
-      motion_(linear.system(), motion),
+      motion_(linear.system(), motion, linear.running().spinning()),
       solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {

@@ -24,7 +24,7 @@ class Counter {
   Counter(Linearizer& linear, const CriticalOptions& o)
       : linear_(linear),
         options_(o),
-        motion_(linear.system(), o.motion),
+        motion_(linear.system(), o.motion, linear.running().spinning()),
         lu_(linear.system().pattern(), motion_.active()) {}
   Index count(double Omega) { return count(Omega, options_.order * Omega); }
   /// tables: frequency of supports tabulated against it.
@@ -424,7 +424,7 @@ class MapTracker {
     Linearizer linear(*p.system, running);
     if (options_.undeformed) linear.stay_undeformed();
     const std::vector<Critical> all = critical_speeds(linear, options_.critical);
-    MotionReduction motion(*p.system, options_.critical.motion);
+    MotionReduction motion(*p.system, options_.critical.motion, linear.running().spinning());
     p.matrices = motion.reduce(linear.conservative_at(options_.critical.max_speed));
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!wanted(all[i].mode)) continue;

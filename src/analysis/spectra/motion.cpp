@@ -11,9 +11,12 @@ namespace {
 /// Of the stiffness an unknown has by itself, the part left when all others give way: below this it
 /// is rounding. The pivot of a chain that nothing holds ends at 1e-16 to 1e-13 of it.
 constexpr double unresisted = 1e-11;
-/// Of a spin: what resists it so little (a cracked or flat rotor at rest that would roll under its weight)
-/// is slow beside bending, and its inertia, which is left out, holds it.
-constexpr double slow_spin = 1e-5;
+/// How evenly a line turns whose spin is resisted less than its own twist resists, with a twentieth of it.
+constexpr double as_one = 0.05;
+/// Softness from which it may do so.
+constexpr double soft_spin = 1e2;
+/// The same of what moves with a spin that is held already: teeth and couplings are stiffer.
+constexpr double loose_spin = 1e5;
 
 void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> out_of,
                   la::BlockMatrix<6>& out) {
@@ -61,11 +64,14 @@ Motion kind_of_unknown(const system::System& system, Index unknown) {
                                : Motion::lateral;
 }
 
-MotionReduction::MotionReduction(const system::System& system, Motion motion, Twist twist)
+MotionReduction::MotionReduction(const system::System& system, Motion motion,
+                                 std::span<const unsigned char> spinning, Twist twist)
     : system_(system),
       motion_(motion),
       active_(system.active().begin(), system.active().end()),
-      follows_(active_.size(), 0) {
+      follows_(active_.size(), 0),
+      spinning_(spinning.begin(), spinning.end()) {
+  WHIRL_EXPECTS(spinning.empty() || static_cast<Index>(spinning.size()) == system.nodes());
   if (motion == Motion::all) return;
   for (Index k = 0; k < system.size(); ++k) {
     const Motion kind = kind_of_unknown(system, k);
@@ -100,75 +106,126 @@ double& MotionReduction::own_stiffness(Index unknown) {
   return reduced_.K.data()[36 * slot + 7 * (unknown % 6)];
 }
 
-void MotionReduction::restrain(Index unknown) {
+void MotionReduction::restrain(Index unknown, bool rolls) {
   WHIRL_EXPECTS(unknown >= 0 && unknown < system_.size());
+  constexpr double firmly = 1e3;  // beside what else resists
   double& stiffness = own_stiffness(unknown);
-  const double spring = stiffness != 0.0 ? std::abs(stiffness)
-                                         : 1.0;  // what nothing resists at all: any spring will do
+  const double own = stiffness != 0.0 ? std::abs(stiffness)
+                                      : 1.0;  // what nothing resists at all: any spring will do
+  const double spring = rolls ? firmly * own : own;
   stiffness += spring;
-  restraints_.push_back(unknown);
-  springs_.push_back(spring);
+  springs_.push_back({unknown, rolls, spring});
 }
 
-double MotionReduction::resisted(Index unknown) const {
-  return kind_of_unknown(system_, unknown) == Motion::torsional ? slow_spin : unresisted;
+double MotionReduction::softness(Index unknown) const {
+  const Index i = unknown / 6, c = unknown % 6;
+  const double flexibility = followers_->inverse_pivot_block(i)(c, c);
+  return std::abs(flexibility * reduced_.K.block(reduced_.K.pattern().diagonal(i))(c, c));
 }
 
 /// The unknown that others hold least, or -1 when all are held. After a factorisation.
 Index MotionReduction::softest_unknown() const {
   Index softest = -1;
-  double most = 1.0;
-  for (Index i = 0; i < system_.nodes(); ++i) {
-    const auto flags = std::span(follows_).subspan(at(6 * i), 6);
-    if (std::find(flags.begin(), flags.end(), 1) == flags.end()) continue;
-    const Matrix<6> flexibility = followers_->inverse_pivot_block(i);
-    const auto stiffness = reduced_.K.block(reduced_.K.pattern().diagonal(i));
-    for (Index c = 0; c < 6; ++c) {
-      if (!flags[at(c)]) continue;
-      const double ratio = std::abs(flexibility(c, c) * stiffness(c, c)) * resisted(6 * i + c);
-      if (ratio > most) {
-        most = ratio;
-        softest = 6 * i + c;
-      }
+  double most = 1.0 / unresisted;
+  for (Index k = 0; k < system_.size(); ++k) {
+    if (!follows_[at(k)]) continue;
+    const double ratio = softness(k);
+    if (ratio > most) {
+      most = ratio;
+      softest = k;
     }
   }
   return softest;
 }
 
+bool MotionReduction::spins(Index unknown) const {
+  return unknown % 6 == system::spin_phi && follows_[at(unknown)] && !spinning_.empty() &&
+         spinning_[at(unknown / 6)];
+}
+
+void MotionReduction::push(const Restraint& r) {
+  scratch_.setZero();
+  scratch_[r.unknown] = r.spring;
+  followers_->solve(scratch_);
+}
+
+bool MotionReduction::turns_as_one(Index unknown) const {
+  const Index line = system_.node(unknown / 6).line;
+  const double turn = scratch_[unknown];
+  for (Index i = 0; i < system_.nodes(); ++i) {
+    const Index k = 6 * i + system::spin_phi;
+    if (system_.node(i).line == line && spins(k) &&
+        !(std::abs(scratch_[k] - turn) <= as_one * std::abs(turn)))
+      return false;
+  }
+  return true;
+}
+
+Index MotionReduction::rolling_spin() {
+  std::vector<Index> softest(at(system_.lines()), -1);
+  std::vector<double> most(at(system_.lines()), soft_spin);
+  for (Index i = 0; i < system_.nodes(); ++i) {
+    const Index k = 6 * i + system::spin_phi;
+    if (!spins(k)) continue;
+    const Index line = system_.node(i).line;
+    const double ratio = softness(k);
+    if (ratio <= most[at(line)]) continue;
+    most[at(line)] = ratio;
+    softest[at(line)] = k;
+  }
+  for (const Restraint& r : springs_) {
+    push(r);
+    constexpr double little = 1e-3;
+    for (Index i = 0; i < system_.nodes(); ++i) {
+      Index& k = softest[at(system_.node(i).line)];
+      const bool moves = std::abs(scratch_[6 * i + system::spin_phi]) > little;
+      if (spins(6 * i + system::spin_phi) && moves && most[at(system_.node(i).line)] < loose_spin)
+        k = -1;
+    }
+  }
+  for (const Index k : softest) {
+    if (k < 0) continue;
+    push({k, true, 1.0});
+    if (turns_as_one(k)) return k;
+  }
+  return -1;
+}
+
 /// The springs of the last time: each must still give way to a load on it as it would alone.
 bool MotionReduction::restraints_still_free() {
-  for (std::size_t i = 0; i < restraints_.size(); ++i) {
-    scratch_.setZero();
-    scratch_[restraints_[i]] = springs_[i];
-    followers_->solve(scratch_);
-    constexpr double rounding = 1e-9;
-    const double weak = 2.0 * resisted(restraints_[i]);
-    if (std::abs(scratch_[restraints_[i]] - 1.0) > std::max(rounding, weak)) return false;
+  constexpr double rounding = 1e-9;
+  for (const Restraint& r : springs_) {
+    push(r);
+    if (!(r.rolls ? turns_as_one(r.unknown) : std::abs(scratch_[r.unknown] - 1.0) <= rounding))
+      return false;
   }
   return true;
 }
 
 void MotionReduction::find_restraints() {
   const auto factor = [&] { return followers_->factor(reduced_, 0.0, 0.0, 1.0) == la::Status::ok; };
-  std::vector<Index> last;
-  last.swap(restraints_);
-  springs_.clear();
-  for (const Index k : last)
-    restrain(k);
+  std::vector<Restraint> last;
+  last.swap(springs_);
+  for (const Restraint& r : last)
+    restrain(r.unknown, r.rolls);
   bool regular = factor();
   if (!last.empty() && (!regular || !restraints_still_free())) {
-    for (std::size_t i = 0; i < restraints_.size(); ++i)
-      own_stiffness(restraints_[i]) -= springs_[i];
-    restraints_.clear();
+    for (const Restraint& r : springs_)
+      own_stiffness(r.unknown) -= r.spring;
     springs_.clear();
     regular = factor();
   }
-  while (true) {
-    const Index k = regular ? softest_unknown() : followers_->singular_unknown();
-    if (k < 0 || static_cast<Index>(restraints_.size()) >= system_.size()) return;
-    restrain(k);
+  while (static_cast<Index>(springs_.size()) < system_.size()) {
+    Index k = regular ? softest_unknown() : followers_->singular_unknown();
+    const bool rolls = k < 0 && regular;
+    if (rolls) k = rolling_spin();
+    if (k < 0) break;
+    restrain(k, rolls);
     regular = factor();
   }
+  restraints_.clear();
+  for (const Restraint& r : springs_)
+    restraints_.push_back(r.unknown);
 }
 
 }  // namespace whirl::analysis

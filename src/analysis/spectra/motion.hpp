@@ -9,8 +9,9 @@
 // and torsional inertia, of relative size (lateral/axial or torsional frequency)^2 times the square
 // of the coupling. A motion that nothing resists (a shaft free to move along its axis, the free
 // spin) is restrained by a spring at one unknown: what the rest of the model feels of it is zero,
-// and so is the force in the spring. A spin that next to nothing resists is held so: a rotor at rest
-// that is not round would roll under its weight, slowly, and does not while it vibrates.
+// and so is the force in the spring. The spin of a rotor that turns as one against little (one that is
+// not round rolls at rest under its weight) is held so too: it is slow beside bending, and its inertia,
+// which is left out, holds it. What follows a spin that is held already, by teeth or a coupling, follows.
 //
 // Torsional and axial motion hold the rest: bending is slow beside them and held by its inertia,
 // not by its stiffness.
@@ -35,7 +36,9 @@ class MotionReduction {
   /// twist: of lateral motion alone. Held where matrices that depend on the angle of the rotor are
   /// not averaged over it: a free spin then is not free of forces, and the rotor turns at its
   /// speed.
-  MotionReduction(const system::System& system, Motion motion, Twist twist = Twist::follows);
+  /// spinning: a flag a node whose phi turns with its line (SteadySystem::spinning()); empty: none does.
+  MotionReduction(const system::System& system, Motion motion,
+                  std::span<const unsigned char> spinning, Twist twist = Twist::follows);
 
   Motion motion() const { return motion_; }
   /// 6 flags a node: 1 where an unknown takes part or follows, 0 where it is held.
@@ -56,13 +59,25 @@ class MotionReduction {
   std::span<const Index> restraints() const { return restraints_; }
 
  private:
+  struct Restraint {
+    Index unknown = -1;
+    bool rolls = false;  ///< a spin that something resists; false: nothing does
+    double spring = 0;
+  };
   void find_restraints();
   bool restraints_still_free();
   Index softest_unknown() const;
-  void restrain(Index unknown);
+  /// A spin that little resists, or -1. After a factorisation with nothing softer left.
+  Index rolling_spin();
+  void restrain(Index unknown, bool rolls);
   double& own_stiffness(Index unknown);
-  /// Part of the stiffness of an unknown below which others do not hold it.
-  double resisted(Index unknown) const;
+  /// How much more an unknown gives way than it would if all others were held. After a factorisation.
+  double softness(Index unknown) const;
+  bool spins(Index unknown) const;
+  /// Into scratch_: the motion of a restraint under a force on its spring.
+  void push(const Restraint& r);
+  /// scratch_ turns the line of an unknown as one.
+  bool turns_as_one(Index unknown) const;
 
   const system::System& system_;
   Motion motion_;
@@ -70,8 +85,9 @@ class MotionReduction {
   bool any_ = false;                             ///< something follows
   la::MCK reduced_;
   std::unique_ptr<la::BlockLu<double>> followers_;
-  std::vector<Index> restraints_;
-  std::vector<double> springs_;  ///< at the restraints
+  std::vector<unsigned char> spinning_;
+  std::vector<Restraint> springs_;
+  std::vector<Index> restraints_;  ///< their unknowns
   VecX scratch_;
 };
 

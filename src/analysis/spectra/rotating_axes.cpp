@@ -162,7 +162,7 @@ void RotatingAxes::require(const SteadySystem& running) {
 
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
     : linear_(linear),
-      motion_(linear.system(), motion, MotionReduction::Twist::held),
+      motion_(linear.system(), motion, linear.running().spinning(), MotionReduction::Twist::held),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   WHIRL_EXPECTS(harmonics >= 0);

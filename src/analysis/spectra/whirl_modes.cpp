@@ -59,7 +59,7 @@ la::ModeOptions la_options(const ModesOptions& o, const MatX& maybe_free, bool h
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
     : linear_(linear),
       options_(options),
-      motion_(linear.system(), options.motion),
+      motion_(linear.system(), options.motion, linear.running().spinning()),
       solver_(linear.system().pattern(), motion_.active(),
               la_options(options, motions_of_lines(linear.system(), motion_),
                          options.damped && linear.hysteretic())) {
