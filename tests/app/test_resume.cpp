@@ -193,7 +193,8 @@ TEST_P(ResumeScheme, KilledAtRandomTimesEqualsUninterrupted) {
       0.02, 0.5);  // the first cut comes while it runs, also when the machine has become idle
   int code = run("d.toml", "cut", false, share(random) * whole, SIGKILL), cuts = 0;
   for (; code != 0 && cuts < 50; ++cuts) {
-    EXPECT_TRUE(code == -SIGKILL || code == 130) << code;
+    // -SIGINT: it came before the program had a handler for it
+    EXPECT_TRUE(code == -SIGKILL || code == -SIGINT || code == 130) << code;
     code = cuts < 4 ? run("d.toml", "cut", true, share(random) * whole, cuts % 2 ? SIGKILL : SIGINT)
                     : run("d.toml", "cut", true);
   }
