@@ -47,6 +47,7 @@ class PadInState {
                                       share_driven(static_cast<std::size_t>(wet)) * f.slope[i]));
     }
     fill_dry(f);
+    if (conserves()) add_wetted(f, offset);
     return f;
   }
 
@@ -106,6 +107,42 @@ class PadInState {
   }
 
  private:
+  /// Of the width, what ruptured film at this place wets of the oil that is carried to it.
+  double share_wet(double offset) const {
+    const bool forward = slip_ > 0.0;
+    double from = forward ? 0.0 : arc_.length;  // where the gap was full last
+    for (std::size_t k = 0; k < films_.size(); ++k) {
+      const PadProfile::Stretch& s = films_[forward ? k : films_.size() - 1 - k];
+      if (s.from <= offset && offset <= s.to) return 1.0;
+      if (forward ? s.to < offset : s.from > offset) from = forward ? s.to : s.from;
+    }
+    return std::min(1.0, thickness(arc_.start + from) / thickness(arc_.start + offset));
+  }
+  void add_wetted(FilmField& f, const std::vector<double>& offset) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < offset.size(); ++k) {
+      if (k > 0) sum += wetted(offset[k - 1], offset[k]);
+      f.share.push_back(share_wet(offset[k]));
+      f.wetted.push_back(sum);
+    }
+  }
+  /// int share dtheta, by Simpson's rule between the ends of films.
+  double wetted(double from, double to) const {
+    std::vector<double> ends{from};
+    for (const PadProfile::Stretch& s : films_)
+      for (const double end : {s.from, s.to})
+        if (end > from && end < to) ends.push_back(end);
+    ends.push_back(to);
+    double sum = 0.0;
+    for (std::size_t k = 1; k < ends.size(); ++k) {
+      const double width = ends[k] - ends[k - 1], inside = 1e-9 * width;
+      const double middle = 0.5 * (ends[k] + ends[k - 1]);
+      sum +=
+          width / 6.0 *
+          (share_wet(ends[k - 1] + inside) + 4.0 * share_wet(middle) + share_wet(ends[k] - inside));
+    }
+    return sum;
+  }
   double viscosity(double offset) const {
     if (medium_.log_viscosity.empty()) return film_.viscosity;
     double slope = 0.0;
@@ -175,6 +212,15 @@ FiniteJournal alone(const FiniteJournal& film, std::size_t k) {
   if (film.grid) one.grid = std::make_shared<const std::vector<GridPad>>(1, (*film.grid)[k]);
   if (film.kept_from >= 0) one.kept_from += static_cast<std::ptrdiff_t>(k) * film.kept_each();
   return one;
+}
+
+FilmForce force_alone(const FiniteJournal& film, std::size_t pad, const FilmPoint& p) {
+  FilmForce force;
+  alone(film, pad).evaluate(p, force);
+  return force;
+}
+double loss_of(const FilmForce& force, const FilmPoint& p) {
+  return force.pump - (force.F.dot(p.w) + force.T * p.slip);
 }
 
 /// A row of numbers at places in ascending order, between them linear.
@@ -284,6 +330,11 @@ void stand_on_profile(PadInState& in, bool forward, FilmStanding& s) {
 
 }  // namespace
 
+double film_loss(const FiniteJournal& film, std::size_t pad, const FilmPoint& p) {
+  WHIRL_EXPECTS(film.inside(p));
+  return loss_of(force_alone(film, pad, p), p);
+}
+
 FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
                            double density) {
   WHIRL_EXPECTS(film.inside(p));
@@ -298,10 +349,9 @@ FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const Fil
     f = in.field(samples);
     stand_on_profile(in, p.slip >= 0.0, s);
   }
-  FilmForce force;
-  alone(film, pad).evaluate(p, force);
+  const FilmForce force = force_alone(film, pad, p);
   s.force = -force.F;
-  s.power = force.pump - (force.F.dot(p.w) + force.T * p.slip);
+  s.power = loss_of(force, p);
   for (std::size_t i = 0; i < samples; ++i) {
     if (f.largest[i] > s.highest) {
       s.highest = f.largest[i];

@@ -25,8 +25,12 @@ struct FilmField {
   std::vector<unsigned char> wet;  ///< film, not ruptured
   /// Of a film on a grid, for its heat: flow with ruptured gaps filled, m3/s; what is turned into heat
   /// from the start of the pad to here, W; the length that is no relief track times h, over the
-  /// length, m, and likewise of 1/h, 1/m. Empty: one profile along the axis.
+  /// length, m, and likewise of 1/h, 1/m. Of a film that conserves mass the flow as it is, and of the
+  /// length what oil wets. Empty: one profile along the axis.
   std::vector<double> filled, lost, gap, conducting;
+  /// Of a profile that conserves mass: the share of the width that oil wets, and its integral from the
+  /// start of the pad to here, rad. Empty: all of it.
+  std::vector<double> share, wetted;
 };
 
 /// One pad's film.
@@ -45,6 +49,8 @@ struct FilmStanding {
 /// @pre the journal is inside the film at p; samples >= 3.
 FilmField sample_film(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
                       std::size_t samples);
+/// Turned into heat in the film of one pad, W. @pre as sample_film.
+double film_loss(const FiniteJournal& film, std::size_t pad, const FilmPoint& p);
 /// density: of the oil for the Reynolds number, kg/m3.
 FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
                            double density);

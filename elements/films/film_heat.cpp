@@ -80,6 +80,8 @@ class PadHeat {
     dx_ = film_.radius * std::abs(field_.theta[1] - field_.theta[0]);
     Band a(x_.rows(), M_ + J_);
     add_film(a);
+    // where films begin and end between faces, these see it by the step
+    if (conserves()) turn_into_heat(film_loss(film_, pad.pad, pad.point));
     if (M_ > 0) add_wall(a);
     a.solve(x_);
   }
@@ -114,9 +116,9 @@ class PadHeat {
   Index wall_place(Index i, Index m) const { return i * (M_ + J_) + m; }
   double width(Index j) const { return edge_[j + 1] - edge_[j]; }
   void turn_round() {
-    for (auto* x :
-         {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope, &field_.viscosity,
-          &field_.flow, &field_.filled, &field_.lost, &field_.gap, &field_.conducting})
+    for (auto* x : {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope,
+                    &field_.viscosity, &field_.flow, &field_.filled, &field_.lost, &field_.gap,
+                    &field_.conducting, &field_.share, &field_.wetted})
       std::reverse(x->begin(), x->end());
     std::reverse(field_.wet.begin(), field_.wet.end());
     for (auto* x : {&field_.slope, &field_.flow, &field_.filled})
@@ -124,19 +126,31 @@ class PadHeat {
         value = -value;
   }
   bool on_grid() const { return !field_.lost.empty(); }
+  bool conserves() const { return !field_.share.empty(); }
   /// At face i: film thickness; of recesses the mean over the length.
   double face_gap(Index i) const { return on_grid() ? field_.gap[at(i)] : field_.thickness[at(i)]; }
   double h(Index i) const { return 0.5 * (face_gap(i) + face_gap(i + 1)); }
+  /// At face i: thickness times the share of the width through which oil flows.
+  double flow_gap(Index i) const {
+    return conserves() ? face_gap(i) * field_.share[at(i)] : face_gap(i);
+  }
+  /// Share of the width that oil wets, of a cell.
+  double wet(Index i) const {
+    if (!conserves()) return 1.0;
+    return std::abs((field_.wetted[at(i + 1)] - field_.wetted[at(i)]) /
+                    (field_.theta[at(i + 1)] - field_.theta[at(i)]));
+  }
   /// For conduction across the film, 1/m.
   double over_gap(Index i) const {
-    if (!on_grid()) return 1.0 / h(i);
+    if (!on_grid()) return wet(i) / h(i);
     return 0.5 * (field_.conducting[at(i)] + field_.conducting[at(i + 1)]);
   }
   /// h^2 P'/(2 eta f R) at a face, m/s: what the pressure drives back in the middle of the film, over
-  /// 1/4; on a grid with which the flow is right.
+  /// 1/4; on a grid, and where mass is conserved, with which the flow is right.
   double pushed_back(Index i) const {
     const double H = face_gap(i);
     if (on_grid()) return 3.0 * speed_ - 6.0 * field_.filled[at(i)] / (film_.length * H);
+    if (conserves()) return 3.0 * speed_ - 6.0 * field_.flow[at(i)] / (film_.length * flow_gap(i));
     const double viscosity = field_.viscosity[at(i)];
     return H * H * field_.slope[at(i)] /
            (2.0 * viscosity * factors(H, viscosity).along * film_.radius);
@@ -158,6 +172,10 @@ class PadHeat {
   void add_film(Band& a);
   void add_flows(Band& a);
   void add_loss(Index i);
+  void turn_into_heat(double loss) {
+    x_.col(of_loss) *= loss / heat_;
+    heat_ = loss;
+  }
   void add_wall(Band& a);
   void conduct(Band& a, Index p, Index q, double by) {
     a(p, p) += by;
@@ -209,7 +227,7 @@ void PadHeat::add_flows(Band& a) {
   const double capacity = s_.density * s_.specific_heat * film_.length;
   carried_.resize(N_ + 1, J_);
   for (Index i = 0; i <= N_; ++i) {
-    const double H = face_gap(i), pushed = pushed_back(i);
+    const double H = flow_gap(i), pushed = pushed_back(i);
     const auto below = [&](double z) {  // int u dzeta
       return 0.5 * speed_ * z * z - pushed * z * z * (0.5 - z / 3.0);
     };
@@ -249,14 +267,14 @@ void PadHeat::add_loss(Index i) {
   const double across = 3.0 * H * H * H * H * P * P * film_.leakage /
                         (L * L * film_.source * viscosity * viscosity * f.across);
   const double unit = viscosity / H * L * dx_;
+  const double dragged = speed_ * speed_ * f.shear * wet(i);
   VecX loss(J_);
   for (Index j = 0; j < J_; ++j) {
     const double z0 = edge_[j], z1 = edge_[j + 1];
     const auto odd = [](double z) { return z - z * z; };                          // int (1 - 2 z)
     const auto even = [](double z) { return std::pow(2.0 * z - 1.0, 3) / 6.0; };  // int (1 - 2 z)^2
-    loss[j] = unit *
-              (speed_ * speed_ * f.shear * (z1 - z0) - 2.0 * speed_ * pushed * (odd(z1) - odd(z0)) +
-               (of_flow + across) * (even(z1) - even(z0)));
+    loss[j] = unit * (dragged * (z1 - z0) - 2.0 * speed_ * pushed * (odd(z1) - odd(z0)) +
+                      (of_flow + across) * (even(z1) - even(z0)));
   }
   // on a grid the loss is known, and goes across the film as that of the mean over the length does
   if (on_grid()) loss *= std::abs(field_.lost[at(i + 1)] - field_.lost[at(i)]) / loss.sum();

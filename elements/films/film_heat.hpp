@@ -6,7 +6,8 @@
 //   u = R s zeta - h^2 P'/(2 eta f_x R) zeta (1 - zeta)
 // by finite volumes: flows through the cells balance exactly, what leaves at the sides leaves at the
 // temperature of its place (in a stretch that has ruptured the gaps between the streams count as
-// filled, as they do in the drag), convection is upwind. The loss is that of the film's forces: eta
+// filled, as they do in the drag; those of a film that conserves mass are empty: no flow, no loss, no
+// heat across them), convection is upwind. The loss is that of the film's forces: eta
 // f_s (R s)^2/h and the flows that the pressure drives. Turbulence mixes heat as it does momentum,
 // k_e = k (1 + Pr (f_s - 1)). In the pad, thickness t, conduction along and across; from its back and
 // its ends heat goes to the oil about it by a coefficient. At the face of the pad heat flows on; the

@@ -405,9 +405,16 @@ void GridPad::Solver::loads(GridLoad& out) const {
     for (std::size_t j = 0; j < m_; ++j)
       for (const Piece& x : pieces(j))
         out.z.head<2>() += x.share * (P_[at(i, j)] - in_.edge) * pad_.cells_[i].normal;
-  for (const Cell& cell : pad_.cells_) {
+  const Vec2 wedge = in_.source.head<2>() - motion();
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Cell& cell = pad_.cells_[i];
     out.z.head<2>() -= pad_.side_share_ * in_.edge * cell.normal;  // nothing stands at the side
     out.normal += in_.source.head<2>().dot(cell.normal);
+    for (std::size_t j = 0; j < m_; ++j) {
+      if (!open_[at(i, j)]) continue;  // what is open gives and takes at one pressure
+      for (const Piece& x : pieces(j))
+        out.normal -= x.share * wedge.dot(cell.normal);
+    }
   }
   for (std::size_t f = 0; f < faces(); ++f)
     for (std::size_t g = 0; g < bands_; ++g) {
@@ -431,6 +438,9 @@ void GridPad::Solver::loads(GridLoad& out) const {
     if (known(l) && !known(k)) out.fed += by * (pressure(l) - pressure(k));
   });
   out.shear = carries_ ? shear_carried() : shear_;
+  if (!carries_) return;
+  for (std::size_t k = 0; k < size_; ++k)
+    if (ruptured(k) && known(downstream(k))) out.fed += deficit(k);  // that does not come back
 }
 
 /// How far the film of a link of which one node is dry reaches, over the distance of the nodes.
@@ -600,7 +610,8 @@ void GridPad::Solver::add_flow(GridField& out) const {
   out.side += pad_.side_share_ * (flow[0] - flow[n_]);
 }
 
-/// What a heat balance of the mean over the length needs, ruptured gaps filled: they count so in the drag.
+/// What a heat balance of the mean over the length needs, ruptured gaps filled: they count so in the
+/// drag, but for films that conserve mass.
 void GridPad::Solver::add_heat(GridField& out) const {
   const double S = in_.source[2];
   std::vector<double> driven(n_ + 1, 0.0), shear(n_ + 1, 0.0);  // of the column before a face
@@ -652,6 +663,7 @@ void GridPad::Solver::add_heat(GridField& out) const {
     out.gap.push_back(gap);
     out.conducting.push_back(conducting);
   }
+  if (carries_) take_out_dry(shear, driven, out);
   for (std::size_t f = 0; f < n_; ++f) {
     driven[f + 1] += driven[f];
     shear[f + 1] += shear[f];

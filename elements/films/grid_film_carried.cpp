@@ -201,6 +201,39 @@ double GridPad::Solver::shear_carried() const {
   return out;
 }
 
+/// From shear (of the column before a face), gaps and flows what they count of ruptured gaps. To driven
+/// comes what the journal loses where oil is dragged from a ruptured node against the pressure of the
+/// next one: that which is lacking is lost in filling the gap.
+void GridPad::Solver::take_out_dry(std::vector<double>& shear, std::vector<double>& driven,
+                                   GridField& out) const {
+  const auto take = [&](std::size_t i, std::size_t band, double share) {
+    shear[i + 1] -= share * walls_[i * bands_ + band];
+    for (std::size_t q = 0; q < 4; ++q) {
+      const Point& x = pad_.cells_[i].points[q];
+      const double h =
+          1.0 - in_.e.x() * x.cos - in_.e.y() * x.sin + pad_.depth(i, band)[q] / in_.clearance;
+      out.gap[i] -= 0.25 * share * h;
+      out.conducting[i] -= 0.25 * share / h;
+    }
+  };
+  for_each_ruptured_cell([&](std::size_t i, std::size_t j, std::size_t k, const Dragged& before,
+                             const Dragged& behind) {
+    const double full = before.value + behind.value;
+    const double dry = std::min(1.0, (deficit(upstream(k)) + deficit(k)) / full);
+    for (const Piece& x : pieces(j))
+      take(i, x.band, dry * x.share);
+    out.filled[forward() ? i + 1 : i] -= (forward() ? 1.0 : -1.0) * deficit(k);
+    const std::size_t next = forward() ? std::min(i + 1, n_ - 1) : std::max<std::size_t>(i, 1) - 1;
+    driven[next + 1] += pressure(downstream(k)) * deficit(k);
+  });
+  for_each_cell_at_side([&](std::size_t i, const Dragged& before, const Dragged& behind,
+                            const Dragged& passed, const Dragged& next) {
+    const double full = before.value + behind.value, dry = full - passed.value - next.value;
+    take(i, bands_ - 1, dry / full * pad_.side_share_);
+    out.filled[forward() ? i + 1 : i] -= (forward() ? 1.0 : -1.0) * (behind.value - next.value);
+  });
+}
+
 /// Right side of the adjoint of the shear, and what changes it at given pressures.
 void GridPad::Solver::add_shear_slopes(LoadSlopes& to) {
   adjoint(3).fill(0.0);

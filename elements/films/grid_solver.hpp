@@ -115,6 +115,7 @@ class GridPad::Solver {
   template <class See>
   void for_each_cell_at_side(const See& see) const;
   void add_carried_flow(GridField& out) const;
+  void take_out_dry(std::vector<double>& shear, std::vector<double>& driven, GridField& out) const;
 
   void clear_matrix() { std::fill_n(a_.begin(), size_ * (2 * half_ + 1), 0.0); }
   void couple(std::size_t k, std::size_t l, double by);

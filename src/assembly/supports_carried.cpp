@@ -17,9 +17,7 @@ bool moves_at_large(const model::Step& s) {
 
 /// The film of a bearing conserves mass, and its oil can be followed.
 bool has_cells(const model::BearingLaw& law) {
-  const auto followed = [](const auto& x) {
-    return x.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving && x.rows == 0;
-  };
+  const auto followed = [](const auto& x) { return x.flow.follows_oil(x.rows); };
   if (const auto* film = std::get_if<model::FiniteJournal>(&law)) return followed(*film);
   const auto* pads = std::get_if<model::TiltingPadJournal>(&law);
   return pads && followed(*pads);
@@ -88,7 +86,7 @@ std::vector<PadCells> add_oil_nodes(
 
 bool add_carried_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                       const elements::FiniteJournal& film) {
-  if (!film.mass_conserving || film.grid) return false;
+  if (!film.mass_conserving || film.grid || film.kept_from >= 0) return false;
   std::vector<std::shared_ptr<const elements::CarriedPad>> pads;
   for (std::size_t k = 0; k < film.surface->arcs().size(); ++k)
     pads.push_back(std::make_shared<const elements::CarriedPad>(film, k));

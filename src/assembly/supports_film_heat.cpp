@@ -60,7 +60,7 @@ elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::O
 void set_flow(elements::FiniteJournal& film, const model::FilmFlow& flow, const model::Oil& oil) {
   if (flow.regime == model::FilmFlow::Regime::ng_pan) film.turbulent_density = oil.density;
   film.supply_pressure = flow.supply_pressure;
-  film.mass_conserving = flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+  film.mass_conserving = flow.conserves_mass();
   if (flow.heat) film.knots = knots;
 }
 

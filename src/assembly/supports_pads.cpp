@@ -367,9 +367,8 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
       a, b, law.flow, law.oil, made->pads(), [made](const NodeAt& at) { return made->films(at); },
       films_on));
   const std::shared_ptr<const Ring> ring = made;
-  const bool conserves = law.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
-  const bool has_cells = conserves && law.rows == 0;
-  if (!has_cells || !add_pad_cells<Pressed, Offsets>(a, b, n, ring->all_pads(), ring->unknowns()))
+  if (!law.flow.follows_oil(law.rows) ||
+      !add_pad_cells<Pressed, Offsets>(a, b, n, ring->all_pads(), ring->unknowns()))
     add_momentary_pads(a, b, n, ring);
   TiltingPads pads;
   pads.bearing = number_of(a, b);

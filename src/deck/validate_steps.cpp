@@ -200,7 +200,7 @@ namespace {
 bool conserves_mass(const model::BearingLaw& law) {
   const auto of = [](const auto& x) -> bool {
     if constexpr (requires { x.flow.cavitation; })
-      return x.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+      return x.flow.conserves_mass();
     else
       return false;
   };

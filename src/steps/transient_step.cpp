@@ -330,21 +330,21 @@ void warn_of_pairs(run::Job& job, const model::Step& step, const run::StepState&
   }
 }
 
-/// Oil of films on a grid along the axis takes no time where these have ruptured.
+/// Oil of films on a grid along the axis, and of hot ones, takes no time where these have ruptured.
 void warn_of_momentary_oil(run::Job& job, const model::Step& step) {
   const auto momentary = [](const auto& law) {
-    return law.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving && law.rows > 0;
+    return law.flow.conserves_mass() && !law.flow.follows_oil(law.rows);
   };
   for (const model::Bearing& b : job.model.bearings) {
     const auto* journal = std::get_if<model::FiniteJournal>(&b.law);
     const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
     if (!(journal && momentary(*journal)) && !(pads && momentary(*pads))) continue;
+    const bool hot = journal ? journal->flow.heat.has_value() : pads->flow.heat.has_value();
     results::warn_of_step(
         job, step,
-        fmt::format("bearing '{}': on a grid along the axis the oil of ruptured film is not "
-                    "followed: it comes to the next film in no time, and the film is that of the "
-                    "momentary state",
-                    b.name));
+        fmt::format("bearing '{}': {} the oil of ruptured film is not followed: it comes to the "
+                    "next film in no time, and the film is that of the momentary state",
+                    b.name, hot ? "with 'heat'" : "on a grid along the axis"));
   }
 }
 

@@ -443,10 +443,6 @@ TEST(RecessedJournals, WhatCannotBeIsRefused) {
   refused(film + taper + "taper_width = \"80 mm\"\n", "E14", "wider than the film");
   refused(film + dam + "axial_grid = 0\n", "E26", "no single profile");
   refused(film + "shape = \"plain\"\naxial_grid = 2\n", "E14", "3 to 8 rows");
-  refused(film + dam + "cavitation = \"mass_conserving\"\n" +
-              "thinning = \"0.03 1/K\"\ntemperature = \"40 degC\"\n"
-              "heat = { supply_temperature = \"40 degC\" }\n",
-          "E26", "conserves mass");
   refused(film + "shape = \"grooves\"\naxial_groove = [{ at = \"0 deg\" }, { at = \"10 deg\" }]\n",
           "E14", "touch");
   refused(film + "shape = \"grooves\"\n", "E05", "axial_groove");

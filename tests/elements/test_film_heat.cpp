@@ -208,6 +208,96 @@ TEST(FilmHeat, RupturedGapsCarryHalfTheSpeed) {
   }
 }
 
+// All that ruptured film turns into heat goes somewhere, however little of the width oil wets.
+TEST(FilmHeat, RupturedFilmThatConservesMass) {
+  HeatSettings s = settings();
+  s.wall = 0.015;
+  const double arc = 160 * pi / 180;
+  const std::vector<Recess> pocket{{0.0, 2.0, 2 * c, 2 * c, 0.7}},
+      track{{0.0, arc, 0, 0, 0.3, true}};
+  const std::vector<FiniteJournal> films{split_bearing(), on_grid({{}, {}}),
+                                         on_grid({pocket, track})};
+  for (std::size_t kind = 0; kind < films.size(); ++kind)
+    for (const double spin : {Omega, -Omega})
+      for (const double supply : {0.0, 5e4}) {
+        SCOPED_TRACE(testing::Message() << kind << ", " << spin << " rad/s, " << supply << " Pa");
+        FiniteJournal film = films[kind];
+        film.mass_conserving = true;
+        film.supply_pressure = supply;
+        const Vec2 r(0.3 * c, -0.5 * c);
+        const HeatBalance b = balance(film, r, s, spin);
+        double journal = 0, heat = 0, power = 0;
+        for (std::size_t k = 0; k < 2; ++k) {
+          const PadTemperatures& t = b.pads[k];
+          EXPECT_NEAR(t.to_pad + t.to_journal + t.carried, t.heat, 1e-7 * t.heat);
+          EXPECT_GT(t.film_coldest, s.supply_temperature - 1.0);
+          heat += t.heat;
+          power += film_loss(film, k, at(r, spin));
+          journal += t.to_journal;
+        }
+        EXPECT_NEAR(heat, power, 1e-6 * power);
+        EXPECT_NEAR(journal, 0.0, 1e-7 * b.pads[0].heat);
+      }
+}
+
+// A gap that opens from its groove is ruptured all along: streams of oil as thick as the gap is, dragged
+// at half the speed, each warmed by what it turns into heat itself: dT/dx = 2 eta U/(rho c h^2).
+TEST(FilmHeat, StreamsThatNothingCools) {
+  HeatSettings s = settings();
+  s.conductivity = 1e-12;
+  const double e = 0.6;
+  const Vec2 r = e * c * Vec2(std::cos(5 * pi / 180), std::sin(5 * pi / 180));
+  for (FiniteJournal film : {split_bearing(), on_grid({{}, {}})}) {
+    film.mass_conserving = true;
+    const PadTemperatures t = balance(film, r, s).pads[0];
+    double rise = 0;
+    constexpr int n = 1000;
+    for (int k = 0; k < n; ++k) {
+      const double theta = (10 + 160 * (k + 0.5) / n) * pi / 180,
+                   h = c * (1 - e * std::cos(theta - 5 * pi / 180));
+      rise += 2 * eta * R * Omega / (s.density * s.specific_heat * h * h) * R * 160 * pi / 180 / n;
+    }
+    EXPECT_NEAR(t.out - t.in, rise, 5e-3 * rise) << (film.grid != nullptr);
+    EXPECT_NEAR(t.carried, t.heat, 1e-7 * t.heat);
+  }
+}
+
+// Full film is as warm whether it conserves mass where it would rupture or not.
+TEST(FilmHeat, FullFilmThatConservesMass) {
+  HeatSettings s = settings();
+  s.wall = 0.015;
+  const Vec2 r(0.2 * c, -0.3 * c);
+  FiniteJournal film = split_bearing();
+  film.supply_pressure = 5e6;
+  const HeatBalance full = balance(film, r, s);
+  film.mass_conserving = true;
+  const HeatBalance b = balance(film, r, s);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double rise = full.pads[k].hottest - s.supply_temperature;
+    EXPECT_NEAR(b.pads[k].hottest, full.pads[k].hottest, 5e-3 * rise);
+    EXPECT_NEAR(b.pads[k].out, full.pads[k].out, 5e-3 * rise);
+    EXPECT_NEAR(b.pads[k].heat, full.pads[k].heat, 5e-3 * full.pads[k].heat);
+  }
+}
+
+// With a profile and on a grid: where it forms of what is carried to it, and where it has ruptured.
+TEST(FilmHeat, AGridThatConservesMassIsAsWarm) {
+  HeatSettings s = settings();
+  s.wall = 0.015;
+  const Vec2 r(0.5 * c, -0.5 * c);
+  const auto conserving = [&](FiniteJournal film) {
+    film.mass_conserving = true;
+    return balance(film, r, s);
+  };
+  const HeatBalance profile = conserving(split_bearing()), grid = conserving(on_grid({{}, {}}));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double rise = profile.pads[k].hottest - s.supply_temperature;
+    EXPECT_NEAR(grid.pads[k].hottest, profile.pads[k].hottest, 0.015 * rise);
+    EXPECT_NEAR(grid.pads[k].out, profile.pads[k].out, 0.015 * rise);
+    EXPECT_NEAR(grid.pads[k].heat, profile.pads[k].heat, 0.01 * profile.pads[k].heat);
+  }
+}
+
 // What the difference of two equilibria says of a hot film is what its linear law says.
 TEST(FilmHeat, CoefficientsAreDifferencesOfEquilibria) {
   FiniteJournal film = split_bearing();

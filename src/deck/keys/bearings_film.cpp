@@ -132,10 +132,6 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting) {
   if (!v.clean()) return;
   check_oil(v, o, given);
   if (!v.clean()) return;
-  if (heated && f.cavitation == model::FilmFlow::Cavitation::mass_conserving)
-    v.error("E26", "cavitation",
-            "the heat balance counts a ruptured film as full, a film that conserves mass does not",
-            "keep one of the two");
   if (!heated && given.thinning)
     v.error("E05", "thinning", "a viscosity that falls with temperature needs 'heat'",
             "heat = { supply_temperature = \"40 degC\" }");
@@ -343,7 +339,7 @@ void describe(Visitor& v, model::FiniteJournal& b) {
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
   film_grid(v, b, "0, or 6 for shapes that vary along the axis");
   const bool fed = b.flow.supply_pressure > 0, heated = b.flow.heat.has_value(),
-             conserves = b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+             conserves = b.flow.conserves_mass();
   if (v.clean() && b.shape == Shape::plain && (fed || heated || conserves))
     v.error("E26",
             fed      ? "supply_pressure"
