@@ -83,6 +83,13 @@ Vec2 MagnetJoint<Offsets>::force(const Nodes& x, const system::Context& c) const
 }
 
 template <bool Offsets>
+double MagnetJoint<Offsets>::capacity(double displacement, double side,
+                                      const system::Context& c) const {
+  constexpr double endless = 1e9;  // A
+  return std::abs(factor(c) * magnet.pull(displacement, std::copysign(endless, side)).force);
+}
+
+template <bool Offsets>
 void MagnetJoint<Offsets>::add_force(const Nodes& x, const system::Context& c,
                                      system::ForceX<size>& f) const {
   const typename Link::Spins s{system::Spin(*x[0]), system::Spin(*x[1])};

@@ -33,6 +33,8 @@ struct Magnet {
   };
   /// Along an axis at the displacement x, m, with the control current i, A.
   Pull pull(double x, double i) const;
+  /// The force ends somewhere, whatever the current.
+  bool has_limit() const { return saturation > 0 || current_limit > 0; }
 
  private:
   Pull pull_of_pair(double x, double i, double side) const;
@@ -63,6 +65,8 @@ struct MagnetJoint {
   AtAxis at_axis(const Nodes& x, const system::Context& c, std::size_t k) const;
   /// On the journal in (y, z), N.
   Vec2 force(const Nodes& x, const system::Context& c) const;
+  /// Of one axis at a displacement, N: where current or force ends, towards the side of this one.
+  double capacity(double displacement, double side, const system::Context& c) const;
   void add_force(const Nodes& x, const system::Context& c, system::ForceX<size>& f) const;
   void add_tangent(const Nodes& x, const system::Context& c, system::TangentX<size>& t) const;
   /// All of its power comes from the amplifiers: supplied.

@@ -153,6 +153,7 @@ struct MagneticControl {
   /// How an axis stands.
   struct Standing {
     double displacement = 0, current = 0, force = 0;  ///< m at the magnet, A, N
+    double capacity = infinity;  ///< N, towards the side it pulls to: where current or force ends
   };
   std::function<std::array<Standing, 2>(const NodeAt&, const system::Context&)> standing;
   /// Force on the shaft, N, for small harmonic motions of it at the frequency w, rad/s, alike at

@@ -168,7 +168,8 @@ void add_magnet(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
     std::array<MagneticControl::Standing, 2> out;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto [x, i, pull] = joint.at_axis(states(at), c, k);
-      out[k] = {x, i, pull.force};
+      const double most = joint.magnet.has_limit() ? joint.capacity(x, pull.force, c) : infinity;
+      out[k] = {x, i, pull.force, most};
     }
     return out;
   };

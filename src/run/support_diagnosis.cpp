@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 
 namespace whirl::run {
 
@@ -35,25 +38,81 @@ class Conditions {
   system::Workspace workspace_;
 };
 
+/// The largest part of the load that has an equilibrium, to 1/256, and that; the least that has none.
+struct Carried {
+  double share = 0, not_carried = 1;
+  std::optional<analysis::Equilibrium> equilibrium;
+};
+
+Carried find_carried(const Job& job, const analysis::SteadySystem& running,
+                     const StepState& start) {
+  analysis::SteadySystem part(job.system(), running.running());
+  analysis::EquilibriumSolver solver(part);
+  Carried out;
+  while (out.not_carried - out.share > 1.0 / 256) {
+    const double factor = 0.5 * (out.share + out.not_carried);
+    part.set_load(factor);
+    auto e =
+        solver.try_solve(start.speed, out.equilibrium ? &out.equilibrium->state : &start.state);
+    if (e) {
+      out.equilibrium = std::move(e);
+      out.share = factor;
+    } else
+      out.not_carried = factor;
+  }
+  return out;
+}
+
+/// Magnets that pull with all they have where the load is as large as it can be: what they carry then.
+/// Empty: none does.
+std::optional<Error> explain_weak_magnets(const Job& job, const analysis::SteadySystem& running,
+                                          const StepState& start, const Error& failed) {
+  const auto standing = [&](const system::State& s) {
+    system::Workspace w = job.system().make_workspace();
+    job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
+    const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
+    std::vector<std::array<assembly::MagneticControl::Standing, 2>> out;
+    for (const assembly::MagneticControl& m : job.built.magnetic_controls)
+      out.push_back(m.standing(node, w.context));
+    return out;
+  };
+  const auto is_limited = [](const auto& axes) {
+    return std::isfinite(axes[0].capacity) || std::isfinite(axes[1].capacity);
+  };
+  const auto at_start = standing(start.state);
+  if (std::none_of(at_start.begin(), at_start.end(), is_limited)) return std::nullopt;
+  const Carried most = find_carried(job, running, start);
+  if (!most.equilibrium) return std::nullopt;
+  constexpr double nearly_all = 0.95;
+  Diagnostic d = failed.diagnostics().front();
+  std::string who;
+  const auto now = standing(most.equilibrium->state);
+  for (std::size_t k = 0; k < now.size(); ++k)
+    for (const std::size_t axis : {0u, 1u}) {
+      const assembly::MagneticControl::Standing& s = now[k][axis];
+      if (!(std::abs(s.force) > nearly_all * s.capacity)) continue;
+      const model::Bearing& b = job.model.bearings[job.built.magnetic_controls[k].bearing];
+      who += fmt::format("{}axis {} of magnetic bearing '{}' carries {:.4g} N of at most {:.4g} N",
+                         who.empty() ? " " : ", ", axis + 1, b.name, std::abs(s.force), s.capacity);
+      if (d.where.line == 0) d.where = b.where;
+    }
+  if (who.empty()) return std::nullopt;
+  d.code = "E76";
+  d.message = fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there",
+                          most.share) +
+              who;
+  d.hint =
+      "a magnet carries what 'saturation' and 'max_current' let it: more of them, less load, or "
+      "another support beside it";
+  return Error(failed.exit(), std::move(d));
+}
+
 /// Why films do not hold the rotor: the share of the load that they carry, and where they stand
 /// then.
 Error explain_overload(const Job& job, const analysis::SteadySystem& running,
                        const StepState& start, const Error& failed) {
-  // The largest part of the load that has an equilibrium, to 1/256.
-  analysis::SteadySystem part(job.system(), running.running());
-  analysis::EquilibriumSolver solver(part);
-  std::optional<analysis::Equilibrium> last;
-  double done = 0, fails = 1;
-  while (fails - done > 1.0 / 256) {
-    const double factor = 0.5 * (done + fails);
-    part.set_load(factor);
-    auto e = solver.try_solve(start.speed, last ? &last->state : &start.state);
-    if (e) {
-      last = std::move(e);
-      done = factor;
-    } else
-      fails = factor;
-  }
+  const Carried most = find_carried(job, running, start);
+  const std::optional<analysis::Equilibrium>& last = most.equilibrium;
   constexpr const char* hint =
       "a film carries more at a higher speed or viscosity, with a smaller clearance, or with a "
       "longer bearing; at rest it carries nothing";
@@ -69,15 +128,15 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
     return Error(failed.exit(), std::move(d));
   }
   // something did carry a share of it: the load is the matter, not a missing support
-  const bool hot =
-      fails == 1.0 && std::any_of(job.built.films.begin(), job.built.films.end(),
-                                  [](const assembly::FilmBearing& b) { return b.heated; });
+  const bool hot = most.not_carried == 1.0 &&
+                   std::any_of(job.built.films.begin(), job.built.films.end(),
+                               [](const assembly::FilmBearing& b) { return b.heated; });
   if (hot) {  // all of it is carried as long as temperatures stay: they are the matter
     d.message += "; with the temperatures it began with,";
   } else {
     d.code = "E76";
-    d.message =
-        fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
+    d.message = fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there",
+                            most.share);
   }
   const Conditions now(job, last->state);
   const char* sep = " ";
@@ -111,6 +170,7 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
   for (const SupportCondition& c : job.built.conditions)
     films = films || Conditions(job, start.state).of(c).film;
   if (!films) {
+    if (auto weak = explain_weak_magnets(job, running, start, failed)) return std::move(*weak);
     Diagnostic d = failed.diagnostics().front();
     std::string names;
     for (const model::Bearing& b : job.model.bearings)

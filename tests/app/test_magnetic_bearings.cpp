@@ -471,6 +471,24 @@ TEST(MagneticBearings, Messages) {
 
 }  // namespace
 
+// 294 N of weight; an integrator asks for ever more current, and nothing else resists.
+TEST(MagneticBearings, ALoadBeyondTheirCapacityIsSaid) {
+  const std::string pid = control(1.5e4, 1e5, 32);
+  const DeckRun current(mass(magnet + "max_current = \"1 A\"\n" + pid, still));
+  EXPECT_NE(current.exit, 0);
+  EXPECT_TRUE(current.says("error[E76]")) << current.log;
+  EXPECT_TRUE(current.says("the supports carry 0.848 of the load")) << current.log;
+  EXPECT_TRUE(current.says("axis 2 of magnetic bearing 'AMB' carries 249.4 N of at most 250 N"))
+      << current.log;
+  const DeckRun saturated(
+      mass("current_stiffness = \"250 N/A\"\namplifier_bandwidth = \"1.2 kHz\"\nbias_current = "
+           "\"2 A\"\ngap = \"0.5 mm\"\nsaturation = \"280 N\"\n" +
+               pid,
+           still));
+  EXPECT_TRUE(saturated.says("error[E76]")) << saturated.log;
+  EXPECT_TRUE(saturated.says("N of at most 280 N")) << saturated.log;
+}
+
 // A fast amplifier with a slow delay grows at 447 and 1,580 Hz, far above the amplifier's 300 Hz and
 // the frequencies asked for, at whose end the sensitivity is largest: "zone A" for both.
 TEST(MagneticBearings, FastLoopsAreSearchedAsFarAsTheyAct) {
