@@ -31,6 +31,7 @@ class SensitivityMeter {
  private:
   Complex seen(const OpenedLoop& loop, const VecXc& x);
   /// With the matrices prepared, of these loops.
+  bool prepare(double Omega, double w);
   void solve(std::span<const OpenedLoop> loops, std::span<Complex> values);
   std::vector<OpenedLoop> loops_;
   HarmonicSolver solver_;
