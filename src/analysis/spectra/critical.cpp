@@ -280,6 +280,8 @@ std::vector<Critical> OrderCrossings::solve(const Linearizer& linear, double tol
   ModesOptions one_at_a_time = modes_;
   one_at_a_time.max_frequency = infinity;
   one_at_a_time.count = 2;
+  // where whirl meets the spin its damping, and with it the frequency, jumps from one side to the other
+  one_at_a_time.hysteresis_order = order_;
   const auto g = [this](double Omega, const WhirlMode& w) { return gap(Omega, w); };
   std::vector<std::optional<TrackedRoot>> roots(steps_.size());
   run_side_by_side(steps_.size(), threads, [&](std::size_t k) {

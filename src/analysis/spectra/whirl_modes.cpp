@@ -116,7 +116,9 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   // loop; where the frequency jumps from one side to the other with it (planes mixed by unequal
   // supports), the last one found stands.
   for (int sides = 0; sides < 6 && mode.lambda.imag() != 0.0; ++sides) {
-    const double side = std::abs(mode.lambda.imag());
+    const bool given = !std::isnan(options_.hysteresis_order);
+    const double side =
+        given ? options_.hysteresis_order * std::abs(Omega) : std::abs(mode.lambda.imag());
     bool steady = false;
     double last_change = infinity;
     for (int round = 0; round < 40 && !steady && mode.lambda.imag() != 0.0; ++round) {
@@ -136,6 +138,7 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
       mode = std::move(*next);
     }
     if (!steady && mode.lambda.imag() != 0.0) return std::nullopt;
+    if (given) break;
   }
   return finished(mode);
 }

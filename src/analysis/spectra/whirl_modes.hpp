@@ -24,6 +24,9 @@ struct ModesOptions {
   /// Go on to the frequency above which nothing can grow (growth_bound.hpp), and list what grows
   /// whatever its number.
   bool judge = false;
+  /// Hysteretic damping as of a motion at this multiple of the speed: of synchronous whirl nothing, which
+  /// lies on neither side of the spin. NaN: as of each motion's own frequency.
+  double hysteresis_order = nan;
 };
 
 /// Modes at one speed: motions that do not oscillate first (when asked for), then by frequency.
