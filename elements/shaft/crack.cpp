@@ -163,6 +163,11 @@ struct Opening {
 
 CrackLaw::Answer answer(const Crack& k, const Context& c, double M_xi, double M_eta,
                         double cosine) {
+  if (!c.kinks.empty() && k.law.g > 0.0) {
+    CrackLaw::Answer given;
+    given.slope.head<2>() = -c.kinks[k.number];
+    return given;
+  }
   return c.whole_turn ? k.law.mean(M_xi, M_eta) : k.law.at(M_xi, M_eta, cosine);
 }
 
@@ -216,6 +221,27 @@ void Crack::add_energy(const Nodes<2>& x, const Context& c, Energy& e) const {
   if (c.averaged || !bow.varies()) return;
   const Vec2 rest = bow.rate(c.time) * (r[0] * rest1 + r[1] * rest2);
   e.supplied += a.slope[0] * rest[0] + a.slope[1] * rest[1];
+}
+
+Vec2 Crack::moment(const Nodes<2>& x, const Context& c) const {
+  const NodeT<double> n1(*x[0]), n2(*x[1]);
+  const SectionMotion<double> m1(n1), m2(n2);
+  const Opening<double> o(*this, n1, n2, m1, m2, grown(*this, c));
+  return {o.M_xi, o.M_eta};
+}
+
+Crack::KinkLaw Crack::kink_law(const Nodes<2>& x, const Context& c) const {
+  const NodeT<double> n1(*x[0]), n2(*x[1]);
+  const SectionMotion<double> m1(n1), m2(n2);
+  const Opening<double> o(*this, n1, n2, m1, m2, grown(*this, c));
+  KinkLaw out{law, o.cosine};
+  out.alone.g = 0.0;
+  return out;
+}
+
+std::pair<Vec2, Mat2> Crack::KinkLaw::operator()(const Vec2& m) const {
+  const CrackLaw::Answer a = alone.at(m[0], m[1], cosine);
+  return {-a.slope.head<2>(), -a.curvature.topLeftCorner<2, 2>()};
 }
 
 double Crack::opening(const Nodes<2>& x, const Context& c) const {

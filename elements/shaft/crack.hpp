@@ -35,6 +35,7 @@
 #pragma once
 #include <elements/shaft/end_axes.hpp>
 #include <system/kernel.hpp>
+#include <utility>
 
 namespace whirl::elements {
 
@@ -79,6 +80,7 @@ struct Crack {
   }
 
   CrackLaw law;
+  std::size_t number = 0;        ///< among all cracks: of Context::kinks
   EndAxes at;                    ///< normal: xi
   Vec2 r = Vec2::Zero();         ///< r1, r2, N m/rad
   double place = 0;              ///< of the length: which end's normal counts, 0 .. 1
@@ -94,6 +96,20 @@ struct Crack {
   /// f: 0 closed, 1 open.
   double opening(const system::Nodes<2>& x, const system::Context& c) const;
   bool cornered() const { return law.breathing == Breathing::hinge; }
+
+  // As a compliance in series (system::SeriesCompliance): its kink may be given (Context::kinks), which
+  // leaves out what the law of the weight does to the turning of its shaft.
+  double series_stiffness() const { return law.g; }
+  bool by_moment() const { return law.breathing != Breathing::weight; }
+  /// M of the element without it.
+  Vec2 moment(const system::Nodes<2>& x, const system::Context& c) const;
+  /// dW/dm and d2W/dm2 at moments m.
+  struct KinkLaw {
+    CrackLaw alone;
+    double cosine;
+    std::pair<Vec2, Mat2> operator()(const Vec2& m) const;
+  };
+  KinkLaw kink_law(const system::Nodes<2>& x, const system::Context& c) const;
   int region(const system::Nodes<2>& x) const { return opening(x, {}) > 0.5 ? 1 : 0; }
 };
 

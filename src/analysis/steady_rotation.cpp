@@ -130,6 +130,11 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
     hysteretic_ = hysteretic_ || term->depends(workspace_.context).rate;
   make_samples();
   sort_terms();
+  for (std::size_t k = 0; k < system.terms().size(); ++k) {
+    const std::size_t before = series_.size();
+    system.terms()[k]->list_series(series_);
+    (series_.size() > before ? in_series_ : without_series_).push_back(k);
+  }
 }
 
 namespace {
@@ -482,6 +487,35 @@ bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX&
                               la::MCK& out) {
   workspace_.context.averaged = workspace_.context.whole_turn = false;
   const bool inside = evaluate_tangent(f, Omega, q, theta, out, all_);
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
+  return inside;
+}
+
+bool SteadySystem::tangent_without_series_at(const system::Frames& f, double Omega, const VecX& q,
+                                             double theta, la::MCK& out) {
+  workspace_.context.averaged = workspace_.context.whole_turn = false;
+  const bool inside = evaluate_tangent(f, Omega, q, theta, out, without_series_);
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
+  return inside;
+}
+
+bool SteadySystem::visit_series_at(const system::Frames& f, double Omega, const VecX& q,
+                                   double theta,
+                                   const std::function<void(const system::Workspace&)>& visit) {
+  workspace_.context.averaged = workspace_.context.whole_turn = false;
+  const bool inside = evaluate_residual(f, Omega, q, theta, r_, in_series_);
+  if (inside) visit(workspace_);
+  workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
+  return inside;
+}
+
+bool SteadySystem::series_force_at(const system::Frames& f, double Omega, const VecX& q,
+                                   double theta, std::span<const Vec2> kinks, VecX& r) {
+  r.resize(q.size());
+  workspace_.context.averaged = workspace_.context.whole_turn = false;
+  workspace_.context.kinks = kinks;
+  const bool inside = evaluate_residual(f, Omega, q, theta, r, in_series_);
+  workspace_.context.kinks = {};
   workspace_.context.averaged = workspace_.context.whole_turn = running_.mean;
   return inside;
 }

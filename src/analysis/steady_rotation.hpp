@@ -124,6 +124,19 @@ class SteadySystem {
   /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n,
   /// k = 0 .. n-1.
   bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
+  /// Compliances in series, whose harmonics are those of their moments.
+  const std::vector<system::SeriesCompliance>& series() const { return series_; }
+  /// Numbers of the terms they are in.
+  const std::vector<std::size_t>& series_terms() const { return in_series_; }
+  /// The same without them.
+  bool tangent_without_series_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                                 la::MCK& out);
+  /// Sees an evaluation of theirs.
+  bool visit_series_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                       const std::function<void(const system::Workspace&)>& visit);
+  /// Force of given kinks (Context::kinks) alone.
+  bool series_force_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                       std::span<const Vec2> kinks, VecX& r);
   /// The residual at an angle of the reference, rad; else as residual().
   bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
 
@@ -179,6 +192,8 @@ class SteadySystem {
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, without_shafts_, all_;
+  std::vector<system::SeriesCompliance> series_;
+  Terms in_series_, without_series_;
   /// Of other_ and of turning_: those that answer differently to motions of another frequency or rate
   /// (tables, hysteretic damping); the rest.
   Terms asked_, steady_, turning_asked_, turning_steady_;

@@ -200,8 +200,10 @@ void add_crack(Assembly& a, const model::Crack& c) {
     for (const auto& [element, kernel] : kernels) {
       const meshes::Element& e = element_of(a, element);
       const std::array<Index, 2> nodes{e.left.node, e.right.node};
-      add_stressed(a, kernel, nodes, "cracks", element);
-      placed.emplace_back(nodes, kernel);
+      elements::Crack numbered = kernel;
+      numbered.number = a.builder.count<elements::Crack>();
+      add_stressed(a, numbered, nodes, "cracks", element);
+      placed.emplace_back(nodes, numbered);
     }
     result.opening = [placed](const NodeAt& at, const system::Context& ctx) {
       double sum = 0.0;

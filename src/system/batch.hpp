@@ -2,6 +2,7 @@
 // blocks. What does not need to know the kind is compiled once for all of one shape (Elements); a
 // kind adds its own formulas.
 #pragma once
+#include <functional>
 #include <core/contract.hpp>
 #include <core/rotation.hpp>
 #include <la/block.hpp>
@@ -48,6 +49,25 @@ struct Workspace {
   }
 };
 
+/// A compliance in series with the bending of an element (a crack): moments m in axes fixed in the shaft
+/// add the rotations dW/dm, M = m + stiffness dW/dm with M the moments of the element without it. What is
+/// truncated to some harmonics is m, which is smooth; the rotation may switch.
+struct SeriesCompliance {
+  std::array<Index, 2> nodes{};
+  std::size_t number = 0;  ///< in Context::kinks
+  double stiffness = 0;    ///< N m/rad
+  /// M at the last evaluation, N m.
+  std::function<Vec2(const Workspace& w)> moment;
+  struct Kink {
+    Vec2 angle;  ///< dW/dm, rad
+    Mat2 slope;  ///< d2W/dm2, rad/(N m)
+  };
+  bool by_moment = false;  ///< the law is one of m alone, at every angle
+  using Law = std::function<Kink(const Vec2& m)>;
+  /// As it is at the last evaluation.
+  std::function<Law(const Workspace& w)> law;
+};
+
 /// All elements of one kind.
 class Term {
  public:
@@ -83,6 +103,8 @@ class Term {
   virtual bool relaxes() const = 0;
   /// Puts them into q.
   virtual void relax(const Workspace& w, Eigen::Ref<VecX> q) const = 0;
+  /// Appends compliances in series (kernels that have a series_stiffness()).
+  virtual void list_series(std::vector<SeriesCompliance>& out) const = 0;
   virtual void list_couplings(std::vector<std::pair<Index, Index>>& out) const = 0;
   virtual void list_nodes(std::vector<Index>& out) const = 0;
   /// Appends the breakpoints of the time laws in the elements (kernels that have a breakpoints()).
@@ -263,6 +285,33 @@ class Batch final : public Elements<K::n_nodes, K::width> {
       (void)w;
       (void)out;
     }
+  }
+  void list_series(std::vector<SeriesCompliance>& out) const override {
+    if constexpr (requires(const K& k) { k.series_stiffness(); })
+      for (std::size_t i = 0; i < elements_.size(); ++i) {
+        if (!(elements_[i].series_stiffness() > 0.0)) continue;
+        SeriesCompliance c;
+        c.nodes = nodes_[i];
+        c.number = i;
+        c.stiffness = elements_[i].series_stiffness();
+        c.by_moment = elements_[i].by_moment();
+        c.moment = [this, i](const Workspace& w) {
+          typename Base::Seen seen;
+          Base::see(w, i, seen);
+          return elements_[i].moment(seen.x, w.context);
+        };
+        c.law = [this, i](const Workspace& w) -> SeriesCompliance::Law {
+          typename Base::Seen seen;
+          Base::see(w, i, seen);
+          return [law = elements_[i].kink_law(seen.x, w.context)](const Vec2& m) {
+            const auto [angle, slope] = law(m);
+            return SeriesCompliance::Kink{angle, slope};
+          };
+        };
+        out.push_back(std::move(c));
+      }
+    else
+      (void)out;
   }
   Family family() const override { return K::family; }
   Dependence depends(const Context& c) const override {

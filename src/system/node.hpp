@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 namespace whirl::system {
 
@@ -91,6 +92,9 @@ struct Context {
   /// depend on it beside the spin. NaN: none is asked about, as in a motion in time; such elements
   /// then answer for the frequency of the shaft's own spin (synchronous reduction).
   double frequency = std::numeric_limits<double>::quiet_NaN();
+  /// rad, of compliances in series (SeriesCompliance) by their number: given, not by their law; empty: none
+  /// is.
+  std::span<const Vec2> kinks;
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

@@ -88,6 +88,58 @@ TEST(Crack, WeightConformance) {
     check_kernel(crack(Breathing::weight, x, x != 0.79), options());
 }
 
+namespace {
+
+/// V = -kink.M, whatever the law.
+struct CrackOfGivenKink : Crack {
+  std::vector<Vec2> kinks;
+  system::Context given(system::Context c) const {
+    c.kinks = kinks;
+    return c;
+  }
+  void add_force(const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& f) const {
+    Crack::add_force(x, given(c), f);
+  }
+  void add_tangent(const system::Nodes<2>& x, const system::Context& c,
+                   system::TangentX<14>& t) const {
+    Crack::add_tangent(x, given(c), t);
+  }
+  void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const {
+    e.elastic -= kinks[number].dot(moment(x, c));
+  }
+};
+
+}  // namespace
+
+TEST(Crack, OfGivenKinkConformance) {
+  ConformanceOptions o = options();
+  o.objective = true;
+  CrackOfGivenKink k;
+  static_cast<Crack&>(k) = crack(Breathing::response, 1.0);
+  k.number = 1;
+  k.kinks = {Vec2::Zero(), Vec2(0.02, -0.013)};
+  check_kernel(k, o);
+}
+
+// In series: m + g dW/dm = M, and 1/h = 1/(d2W/dm2) + g.
+TEST(Crack, ItsKinkIsThatOfTheMomentsThatAreLeft) {
+  const double g = 900;
+  for (const Breathing b :
+       {Breathing::open, Breathing::weight, Breathing::hinge, Breathing::response})
+    for (const Vec2& M : {Vec2(2, 1), Vec2(0.3, -2), Vec2(-1, 0.4)}) {
+      CrackLaw k = law(b, g);
+      if (b == Breathing::hinge) k.c_eta = 0;
+      const double cosine = 0.3;
+      const CrackLaw::Answer a = k.at(M[0], M[1], cosine);
+      const Vec2 kink = -a.slope.head<2>(), m = M - g * kink;
+      k.g = 0;
+      const auto [angle, slope] = Crack::KinkLaw{k, cosine}(m);
+      EXPECT_LT((angle - kink).norm(), 1e-9 * (kink.norm() + 1e-6));
+      const Mat2 h = slope * (Mat2::Identity() + g * slope).inverse();
+      EXPECT_LT((h + a.curvature.topLeftCorner<2, 2>()).norm(), 1e-9 * (h.norm() + 1e-6));
+    }
+}
+
 TEST(Crack, OfABowedShaftConformance) {
   Crack k = crack(Breathing::response, 1.0);
   k.rest1 = Vec2(0.05, -0.02);

@@ -140,7 +140,7 @@ TEST(CrackedRotor, MultipliersAndBandAgainstFloquet) {
   test::Record record("Breathing crack: largest multiplier of a turn", orbit_source);
   const DeckModel m(jeffcott(mayes));
   analysis::Linearizer linear(m.built.system, m.running());
-  analysis::RotatingAxes axes(linear, 1.1 * omega_n, 2);
+  analysis::RotatingAxes axes(linear, 1.1 * omega_n, {.most = 2});
   analysis::BandOptions o;
   o.modes = 2;  // translations: the disk tilts without damping
   for (const Orbit& x : orbits)
