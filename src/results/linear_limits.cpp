@@ -3,6 +3,7 @@
 #include <results/clearances.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/refined_response.hpp>
+#include <analysis/response/unbalance.hpp>
 #include <analysis/spectra/instability_bands.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/table_spacing.hpp>
@@ -104,7 +105,7 @@ class Growth {
 std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
                                                     const std::vector<double>& speeds,
                                                     double& counted_to) {
-  constexpr Index modes = 8, more = 2;
+  constexpr Index modes = 8, more = 2, most = 5;
   analysis::BandOptions o;
   o.modes = modes;
   o.sense = speeds.front() < 0.0 ? -1.0 : 1.0;
@@ -112,13 +113,17 @@ std::optional<analysis::InstabilityBand> band_among(FrequencyStep& s,
     o.speeds.push_back(std::abs(Omega));
   std::sort(o.speeds.begin(), o.speeds.end());
   const double probed = o.sense * o.speeds.back();
-  analysis::RotatingAxes axes(s.linear, probed);
+  // a band's edges are those of the response without bound: of as many harmonics
+  const Index H = std::max<Index>(analysis::enough_harmonics(s.linear, speeds, most), 1);
+  analysis::RotatingAxes axes(s.linear, probed, {.least = H, .most = std::max<Index>(H, 3)});
   const analysis::BandResult found = analysis::find_bands(axes, o);
   counted_to =
       found.complete() ? std::max(0.0, found.counted_to - std::abs(axes.speed(probed))) : 0.0;
   if (found.bands.empty() || axes.constant())
     return found.bands.empty() ? std::nullopt : std::optional(found.bands.front());
-  analysis::RotatingAxes finer(s.linear, probed, axes.harmonics() + more);
+  const Index finer_harmonics = axes.harmonics() + more;
+  analysis::RotatingAxes finer(s.linear, probed,
+                               {.least = finer_harmonics, .most = finer_harmonics});
   for (const analysis::InstabilityBand& band : found.bands) {
     const double nothing = analysis::unnoticed_share(finer) * std::abs(finer.speed(band.speed));
     const double growth =

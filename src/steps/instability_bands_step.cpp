@@ -48,10 +48,16 @@ BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& 
 /// What the cut of Hill's determinant does to growth rates.
 struct Truncation {
   int harmonics = 0, speeds = 0;
-  double change = 0;  ///< 1/s, with two harmonics more, the largest
+  double change = 0;   ///< 1/s, with two harmonics more, the largest
+  double allowed = 0;  ///< 1/s, what says nothing
+  double cut = 0;      ///< largest share of the last harmonic in a motion
+  bool settled() const {
+    constexpr double little = 0.3;  // rates feel its square
+    return change <= allowed && cut <= little;
+  }
 };
 
-/// Where the growth is largest: of each band, nine at most, and of all speeds.
+/// Where the growth is largest: of each band, nine at most, and of all speeds; and where most is cut.
 std::vector<double> telling_speeds(const BandResult& r) {
   std::vector<InstabilityBand> bands = r.bands;
   std::sort(bands.begin(), bands.end(),
@@ -61,6 +67,8 @@ std::vector<double> telling_speeds(const BandResult& r) {
     out.push_back(bands[k].speed);
   const auto top = std::max_element(r.growth.begin(), r.growth.end());
   out.push_back(r.speeds[static_cast<std::size_t>(top - r.growth.begin())]);
+  const auto most_cut = std::max_element(r.cut.begin(), r.cut.end());
+  out.push_back(r.speeds[static_cast<std::size_t>(most_cut - r.cut.begin())]);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
@@ -70,8 +78,11 @@ Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep
                            const BandResult& r, double sense, analysis::RotatingAxes& axes) {
   Truncation t;
   t.harmonics = static_cast<int>(axes.harmonics());
+  t.cut = *std::max_element(r.cut.begin(), r.cut.end());
   constexpr Index more = 2;
-  analysis::RotatingAxes finer(s.linear, sense * r.speeds.back(), axes.harmonics() + more);
+  const Index finer_harmonics = axes.harmonics() + more;
+  analysis::RotatingAxes finer(s.linear, sense * r.speeds.back(),
+                               {.least = finer_harmonics, .most = finer_harmonics});
   for (const double Omega : telling_speeds(r)) {
     const auto growth = [&](analysis::RotatingAxes& a) {
       return analysis::largest_growth(a, sense * Omega, r.speeds.back(), law.modes);
@@ -95,9 +106,15 @@ Solved solve_with_enough_harmonics(results::FrequencyStep& s, const model::Stabi
                                    const std::vector<double>& speeds, run::ProgressLine& line) {
   constexpr Index first = 3, most = 11, more = 2;
   constexpr double accuracy = 0.02;  // of the largest growth
+  double slowest = infinity;
+  for (const double Omega : speeds)
+    if (Omega != 0.0) slowest = std::min(slowest, std::abs(Omega));
   Solved out;
+  Index least = 1;
   for (Index harmonics = first;; harmonics += more) {
-    out.axes = std::make_unique<analysis::RotatingAxes>(s.linear, speeds.back(), harmonics);
+    out.axes = std::make_unique<analysis::RotatingAxes>(
+        s.linear, speeds.back(),
+        analysis::Harmonics{.least = least, .most = harmonics, .slowest = slowest});
     out.bands = solve_bands(law, *out.axes, speeds, line);
     if (out.axes->constant()) return out;
     out.cut = find_truncation(s, law, out.bands, sense_of(speeds), *out.axes);
@@ -106,7 +123,9 @@ Solved solve_with_enough_harmonics(results::FrequencyStep& s, const model::Stabi
     double growth = 0.0;
     for (const InstabilityBand& b : out.bands.bands)
       growth = std::max(growth, b.growth);
-    if (out.cut.change <= std::max(nothing, accuracy * growth) || harmonics >= most) return out;
+    out.cut.allowed = std::max(nothing, accuracy * growth);
+    if (out.cut.settled() || harmonics >= most) return out;
+    least = harmonics + more;
   }
 }
 
@@ -308,6 +327,15 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                   "; Hill's determinant is cut after {} harmonics: more join motions by "
                   "less than 1e-6 of the speed",
                   cut.harmonics);
+    if (!cut.settled()) {
+      const std::string open = fmt::format(
+          "growth rates have not settled with these harmonics (the last one is {:.2g} of a "
+          "motion): "
+          "growth is not excluded",
+          cut.cut);
+      known += "; " + open;
+      in_short = open + "; " + in_short;
+    }
     in_short += fmt::format("; Hill with {} harmonics, ", cut.harmonics) +
                 (cut.change > 0.0 ? fmt::format("growth right to {:.1g} 1/s", cut.change)
                                   : "more join motions by less than 1e-6 of the speed");
@@ -315,7 +343,8 @@ void run_instability_bands(run::Job& job, const model::Step& step,
     v["harmonics"] = cut.harmonics;
     v["change of growth with two more [1/s]"] = cut.change;
   }
-  s.summary()["certificate"]["complete"] = r.complete();
+  const bool complete = r.complete() && (axes.constant() || solved.cut.settled());
+  s.summary()["certificate"]["complete"] = complete;
   if (r.complete()) s.summary()["certificate"]["up to [Hz]"] = to_hz(r.counted_to);
   s.summary()["certificate"]["text"] = known;
   s.section.text = results::capital(line) + ". " + why + " " + results::capital(known) + ".";

@@ -114,6 +114,7 @@ void refine_at_poles(results::FrequencyStep& s, std::vector<double>& grid) {
   std::vector<double> places;
   try {
     analysis::Linearizer linear(s.linear);
+    // near enough to put speeds there: the response itself takes as many harmonics as it needs
     analysis::RotatingAxes axes(linear, grid.back());
     for (const Complex pole : axes.poles(grid.front(), grid.back()))
       add_places(pole.real(), pole.imag() / std::abs(pole), places);

@@ -227,7 +227,9 @@ std::string add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
   const Largest twice = largest_of_multiple(r, peaks, 2);
   const double once =
       bounded ? largest_of_multiple(r, {}, 1).amplitude : largest_once_beside(r, twice.speed);
-  if (!breathes && twice.amplitude <= rounding * once) return {};
+  // without weight unbalance alone makes odd multiples, on unequal supports
+  const double most = std::max(twice.amplitude, largest_of_multiple(r, peaks, 3).amplitude);
+  if (!breathes && most <= rounding * once) return {};
   s.summary()["largest at twice the speed 0-peak [m]"] =
       std::isfinite(twice.amplitude) ? twice.amplitude : nan;
   s.add_table("multiples", multiples_table(r, probes, multiples), false);

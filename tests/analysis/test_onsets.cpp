@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -20,6 +21,7 @@ using whirl::test::DeckModel;
 namespace {
 
 constexpr double top_rpm = 12000;
+constexpr double rpm_in_rad_s = std::numbers::pi / 30;
 
 class TabulatedRotor {
  public:
@@ -218,7 +220,7 @@ TEST(Onsets, OfRotorsOnTablesAgainstFrequencyAreThoseOfTheNyquistCriterion) {
     const StabilityResult r = find_instability(linear, o);
     for (const SpeedVerdict& v : r.verdicts) {
       if (!v.certificate.stability_certain()) {
-        std::printf("%s at %g rpm: %s\n", name.c_str(), v.speed / rpm,
+        std::printf("%s at %g rpm: %s\n", name.c_str(), v.speed / rpm_in_rad_s,
                     v.certificate.text().c_str());
         ++uncertain;
         continue;
@@ -227,7 +229,7 @@ TEST(Onsets, OfRotorsOnTablesAgainstFrequencyAreThoseOfTheNyquistCriterion) {
       if (!all.known()) continue;
       ++sum.verdicts;
       grow += v.growing > 0;
-      EXPECT_EQ(v.growing, all.growing()) << name << " at " << v.speed / rpm << " rpm";
+      EXPECT_EQ(v.growing, all.growing()) << name << " at " << v.speed / rpm_in_rad_s << " rpm";
     }
     tests::compare_onsets_to_verdicts(r, name, sum);
   }

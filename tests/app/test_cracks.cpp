@@ -403,3 +403,90 @@ speed = "0 rpm"
     EXPECT_NEAR(deflection.at("largest [m]").number(), middle, 1e-9 * middle) << elements;
   }
 }
+
+namespace {
+
+/// 20 kg in the middle of a pinned shaft of 1 m and 50 mm without mass, cracked there 15 mm deep.
+std::string cracked_jeffcott(const char* law, double damping, const std::string& step) {
+  return fmt::format(R"(format = 1
+[model]
+gravity = "9.81 m/s^2"
+[output]
+report = false
+[[material]]
+name = "light"
+E = "200 GPa"
+nu = 0.3
+density = "0.5 kg/m^3"
+[shaft]
+name = "s"
+material = "light"
+shear = "none"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["l", 500, 50], ["r", 500, 50]]
+[[disk]]
+at = "l:end"
+mass = "20 kg"
+Ip = "1e-6 kg.m^2"
+Id = "1e-6 kg.m^2"
+[[bearing]]
+at = "l:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "r:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+at = "l:end"
+type = "linear"
+cyy = "{0} N.s/m"
+czz = "{0} N.s/m"
+[[probe]]
+name = "p"
+at = "l:end"
+[[crack]]
+at = "l:end"
+depth = "15 mm"
+breathing = "{1}"
+[[step]]
+name = "u"
+{2})",
+                     damping, law, step);
+}
+
+}  // namespace
+
+// Periods of the motion by Dormand and Prince to 1e-9 m, of two degrees of freedom whose shaft gives way by
+// L^3/(48 E I) and, where the moment opens the crack, by c_xi L^2/16 more: with zeta = 0.01, at 0.49, 0.5 and
+// a third of the critical speed. The kink at the crack is told by six harmonics of the moments; by six of
+// the motion it was a ripple on a stiff element, and 2x and 3x backward were wrong by a factor of six and
+// by a quarter.
+TEST(Cracks, TheMultiplesOfAHingeAreThoseOfTheMotionInTime) {
+  struct Case {
+    double speed;
+    const char* column;
+    double amplitude;
+  };
+  const Case cases[] = {{188.03628258516727, "p 2x backward [m]", 1.401e-6},
+                        {191.8737577399666, "p 2x backward [m]", 0.4025e-6},
+                        {127.91583849331107, "p 3x backward [m]", 2.333e-6}};
+  for (const Case& k : cases) {
+    const DeckRun d(cracked_jeffcott(
+        "hinge", 153.49900619197328,
+        fmt::format("type = \"unbalance_response\"\nspeed = {{ values = [\"{:.14g} rad/s\"] }}\n",
+                    k.speed)));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_NEAR(d.csv("u_multiples.csv").last().at(k.column), k.amplitude, 0.03 * k.amplitude)
+        << k.speed;
+  }
+}
+
+// Largest of Floquet's multipliers of the same shaft, whose compliance is L^3/(48 E I) and d2W/dm2 L^2/16 at
+// the moment of the weight: 0.870 1/s. The harmonics of the stiffness of a short element said none.
+TEST(Cracks, TheGrowthOfOneThatFollowsItsMomentIsFloquets) {
+  const DeckRun d(cracked_jeffcott(
+      "response", 100, "type = \"stability\"\nspeed = { values = [\"3609.551056682821 rpm\"] }\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_NEAR(d.csv("u_growth.csv").last().at("growth [1/s]"), 0.870, 0.05 * 0.870);
+}

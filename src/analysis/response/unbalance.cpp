@@ -33,8 +33,14 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
   if (options_.breathes)
     periodic_ = std::make_unique<PeriodicResponse>(linear, std::max(6, options_.multiples + 1));
   else if (options_.turns_with_rotor && !options_.speeds.empty())
-    axes_ = std::make_unique<RotatingAxes>(linear, options_.speeds.back());
+    make_axes();
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
+}
+
+void UnbalanceSolver::make_axes() {
+  if (options_.harmonics < 0) options_.harmonics = enough_harmonics(linear_, options_.speeds);
+  const Index H = std::max<Index>(options_.harmonics, 1);
+  axes_ = std::make_unique<RotatingAxes>(linear_, options_.speeds.back(), Harmonics{H, H});
 }
 
 void UnbalanceSolver::put_multiple(const VecXc& a, SteadyPoint& p) const {
@@ -72,6 +78,73 @@ VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
   return motion.amplitude[1];
 }
 
+VecXc UnbalanceSolver::turn(double Omega, const VecXc& forcing, bool with_multiples,
+                            SteadyPoint& p) {
+  VecXc a = axes_->response(Omega, -forcing);
+  if (Omega < 0) a = a.conjugate().eval();
+  linear_.system().complete(linear_.equilibrium().state, a);
+  p.left_out = axes_->last_share();
+  if (!with_multiples) return a;
+  put_multiples(turn_unevenly(Omega, a), p);
+  p.left_out = std::max(p.left_out, axes_->last_share());
+  return a;
+}
+
+namespace {
+
+/// What is seen of a steady motion: once a revolution, and the mean to three times.
+struct Seen {
+  Seen(RotatingAxes& axes, Linearizer& linear, double Omega) {
+    linear.move_to(Omega);  // others were made meanwhile
+    once = axes.response(Omega, -linear.forcing().front());
+    multiples = axes.multiples(Omega, 3);
+    multiples[1].setZero();  // means nothing
+  }
+  VecXc once;
+  std::vector<VecXc> multiples;
+};
+
+/// Largest difference of the displacements, over the largest of these; of the multiples likewise.
+double change(const system::System& s, const Seen& a, const Seen& b) {
+  const double once = largest_displacement(s, b.once);
+  double size = 1e-6 * once, off = 0.0;  // less is rounding, of a rotor without weight
+  for (std::size_t h = 0; h < a.multiples.size(); ++h) {
+    size = std::max(size, largest_displacement(s, b.multiples[h]));
+    off = std::max(off, largest_displacement(s, VecXc(a.multiples[h] - b.multiples[h])));
+  }
+  const double of_once = largest_displacement(s, VecXc(a.once - b.once));
+  return std::max(once > 0 ? of_once / once : 0.0, size > 0 ? off / size : 0.0);
+}
+
+}  // namespace
+
+Index enough_harmonics(Linearizer& linear, const std::vector<double>& speeds, Index most) {
+  constexpr int looks = 8;
+  constexpr double nothing = 1e-4;
+  constexpr Index more = 2;
+  const auto with = [&](Index H) {
+    return std::make_unique<RotatingAxes>(linear, speeds.back(), Harmonics{H, H});
+  };
+  auto axes = std::make_unique<RotatingAxes>(linear, speeds.back());
+  if (axes->constant()) return 0;
+  auto finer = with(axes->harmonics() + more);
+  // by value, not by number: speeds put in at peaks change nothing
+  const double first = speeds.front(), last = speeds.back();
+  for (int k = 0; k < (first < last ? looks : 1); ++k) {
+    const double Omega = first + (last - first) * k / (looks - 1);
+    if (std::abs(Omega) < 1e-3 * std::max(std::abs(first), std::abs(last))) continue;
+    linear.move_to(Omega);
+    if (linear.forcing().empty()) break;
+    while (finer->harmonics() <= most) {
+      const Seen now(*axes, linear, Omega), then(*finer, linear, Omega);
+      if (!(change(linear.system(), now, then) > nothing)) break;
+      axes = std::move(finer);
+      finer = with(axes->harmonics() + more);
+    }
+  }
+  return axes->harmonics();
+}
+
 std::vector<VecXc> UnbalanceSolver::turn_unevenly(double Omega, const VecXc& once) {
   std::vector<VecXc> out = axes_->multiples(Omega, options_.multiples);
   for (VecXc& a : out)
@@ -104,10 +177,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     } else if (periodic_) {
       a = breathe(Omega, p);
     } else if (axes_) {
-      a = axes_->response(Omega, -linear_.forcing()[k]);
-      if (Omega < 0) a = a.conjugate().eval();
-      linear_.system().complete(linear_.equilibrium().state, a);
-      if (with_outputs && options_.multiples > 0) put_multiples(turn_unevenly(Omega, a), p);
+      a = turn(Omega, linear_.forcing()[k], with_outputs && options_.multiples > 0, p);
     } else if (solver_.prepare(Omega, w)) {
       a = force_of(k, Omega);
       solver_.solve(a);

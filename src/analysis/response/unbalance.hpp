@@ -22,6 +22,7 @@ struct UnbalanceOptions {
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
   bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
+  Index harmonics = -1;           ///< there; -1: enough_harmonics()
   /// Its forces breathe with its turning (periodic_response.hpp).
   bool breathes = false;
   /// Multiples of the speed that are looked at of a rotor that turns unevenly or breathes; 0: none.
@@ -32,6 +33,11 @@ struct UnbalanceOptions {
   bool resolve = false;
   int threads = 1;  ///< 0: all processors; the results are the same for any number
 };
+
+/// Harmonics of Hill's equations with which the steady motion of an asymmetric rotor changes by no more than
+/// 1e-4 when there are two more, at some of these speeds: on unequal supports they are many where it turns
+/// slowly. 0 on isotropic ones; `most` if that is not enough.
+Index enough_harmonics(Linearizer& linear, const std::vector<double>& speeds, Index most = 27);
 
 /// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
 /// with each of them.
@@ -135,6 +141,9 @@ class UnbalanceSolver {
   /// Of a rotor that breathes: amplitude of the speed itself, the others into p; NaN and p.found =
   /// false where there is no periodic motion.
   VecXc breathe(double Omega, SteadyPoint& p);
+  void make_axes();
+  /// The motion at the speed itself of a rotor that turns unevenly, its multiples into p.
+  VecXc turn(double Omega, const VecXc& forcing, bool with_multiples, SteadyPoint& p);
   /// Amplitudes of all multiples of a rotor that turns unevenly; once: of the speed itself.
   std::vector<VecXc> turn_unevenly(double Omega, const VecXc& once);
   void put_multiple(const VecXc& a, SteadyPoint& p) const;

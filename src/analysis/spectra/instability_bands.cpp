@@ -16,6 +16,7 @@ namespace {
 struct Growth {
   double rate = 0, frequency = 0;
   std::optional<la::Mode> mode;
+  double cut = 0;  ///< largest share of the last harmonic in one of the slowest motions
 };
 
 /// A speed and the growth there.
@@ -39,13 +40,25 @@ class BandSearch {
     Growth best{-infinity, 0, {}};
     const std::vector<la::Mode>& modes = solver_.solve(m);
     note_count(solver_.certificate());
+    std::vector<std::pair<double, double>> cut;  // frequency, share of the last harmonic
     for (la::Mode x : modes) {
       if (!is_motion(x)) continue;
       settle(Omega, x);
+      cut.emplace_back(std::abs(x.lambda.imag()), axes_.last_share(x.x));
       constexpr double rounding = 1e-12;  // of several that nothing damps the slowest
       if (x.lambda.real() > best.rate + rounding * std::abs(x.lambda)) best = growth_of(x);
     }
+    best.cut = cut_of_slowest(std::move(cut));
     return best;
+  }
+  /// Faster motions meet copies of others in their last harmonics whatever the number of these.
+  static double cut_of_slowest(std::vector<std::pair<double, double>> cut) {
+    constexpr std::size_t slowest = 4;
+    std::sort(cut.begin(), cut.end());
+    double most = 0.0;
+    for (std::size_t k = 0; k < std::min(slowest, cut.size()); ++k)
+      most = std::max(most, cut[k].second);
+    return most;
   }
   Visited visit(double Omega) { return {Omega, at(Omega)}; }
   /// Whether one of the few motions nearest a frequency in rotating axes grows: a look that costs little.
@@ -88,8 +101,20 @@ class BandSearch {
       settle(Omega, x);
       if (!(x.lambda.real() > noise(Omega))) return false;
     }
-    constexpr double equal = 1e-6;
-    return std::abs(x.lambda - b.growth.mode->lambda) < equal * std::abs(axes_.speed(b.speed));
+    return is_copy(x.lambda, b.growth.mode->lambda, b.speed);
+  }
+
+  /// Whether two exponents are one, whatever multiple of what varies lies between them: which copy of a
+  /// motion has the largest constant part changes with the speed.
+  bool is_copy(Complex a, Complex b, double Omega) const {
+    constexpr double equal = 1e-6, cut = 1e-3;  // copies are not cut alike
+    const double W = std::abs(axes_.speed(Omega)), period = static_cast<double>(axes_.step()) * W;
+    if (std::abs(a - b) < equal * W) return true;
+    if (axes_.constant() || std::abs(a.real() - b.real()) > cut * std::abs(b.real())) return false;
+    const auto is_multiple = [&](double difference) {
+      return std::abs(difference - period * std::round(difference / period)) < cut * W;
+    };
+    return is_multiple(a.imag() - b.imag()) || is_multiple(a.imag() + b.imag());
   }
 
   /// The speed between a stable and an unstable one where the growth is zero. It crosses zero
@@ -139,7 +164,7 @@ class BandSearch {
     return axes_.constant_share(x.x) >= 0.2 && std::abs(x.lambda) != 0.0;
   }
   static Growth growth_of(const la::Mode& x) {
-    return {x.lambda.real(), std::abs(x.lambda.imag()), x};
+    return {x.lambda.real(), std::abs(x.lambda.imag()), x, 0.0};
   }
   /// Hysteretic damping at the rate of the motion itself; a motion that stands in the rotor loses
   /// nothing.
@@ -330,6 +355,23 @@ bool visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense
   return true;
 }
 
+/// Halves what lies between a speed at which something grows and a neighbour where nothing does, to a part of
+/// the speed: other bands may lie between.
+void narrow_edges(BandSearch& search, std::vector<Visited>& samples) {
+  constexpr double near = 0.03;
+  const auto grows = [&](const Visited& x) { return x.growth.rate > search.noise(x.speed); };
+  for (std::size_t k = 0; k + 1 < samples.size();) {
+    const double a = samples[k].speed, b = samples[k + 1].speed;
+    if (grows(samples[k]) == grows(samples[k + 1]) || b - a <= near * b) {
+      ++k;
+      continue;
+    }
+    Visited middle = search.visit(0.5 * (a + b));
+    // what is new on the left is looked at again
+    samples.insert(samples.begin() + static_cast<std::ptrdiff_t>(k) + 1, std::move(middle));
+  }
+}
+
 /// Growing neighbours belong to one band where one motion grows from one to the other; between others is
 /// looked at, to a part of what lies between them.
 void separate_bands(BandSearch& search, std::vector<Visited>& samples) {
@@ -414,10 +456,15 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   }
   if (!axes.constant()) out.sought_between = visit_resonances(search, axes, o.sense, samples);
   separate_bands(search, samples);
+  if (!axes.constant()) {
+    narrow_edges(search, samples);
+    separate_bands(search, samples);
+  }
   for (const Visited& v : samples) {
     out.speeds.push_back(v.speed);
     out.growth.push_back(v.growth.rate);
     out.frequency.push_back(v.growth.frequency);
+    out.cut.push_back(v.growth.cut);
   }
   const auto grows = [&](std::size_t k) { return out.growth[k] > search.noise(out.speeds[k]); };
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -28,6 +28,9 @@ struct BandOptions {
 struct BandResult {
   std::vector<double> speeds, growth,
       frequency;  ///< largest real part (1/s) of the motions, and its frequency in rotating axes
+  /// Largest share of the last harmonic in one of the slowest motions at each speed: rates are right to
+  /// about its square of the speed.
+  std::vector<double> cut;
   std::vector<InstabilityBand> bands;
   /// Parametric and combination resonances between the speeds were looked for, where there can be any.
   bool sought_between = true;

@@ -21,10 +21,6 @@ struct RotatingAxes::Steady {
 
 namespace {
 
-Index count_parts(const std::vector<Index>& orders) {
-  return 2 * static_cast<Index>(orders.size()) - (orders.front() == 0 ? 1 : 0);
-}
-
 /// The matrix as a polynomial of what the speed is off the middle by, through three speeds.
 la::MCK expand(const std::function<const la::MCK&(double)>& at, const la::BlockPattern& pattern,
                double middle, double step) {
@@ -133,10 +129,8 @@ std::vector<Complex> RotatingAxes::poles(double low, double high) {
   std::vector<Complex> out;
   if (!(high > low)) return out;
   at_odd(low);
-  std::vector<Index> orders;
-  for (Index h = 0; h <= harmonics_; ++h)
-    orders.push_back(step_ * h);
-  const Steady turned{*pattern_, active_, orders, false,
+  const std::vector<Index> even = orders();
+  const Steady turned{*pattern_, active_, even, false,
                       [this](double Omega) -> const la::MCK& { return at(Omega); }};
   const Steady weighed{*odd_pattern_, odd_active_, odd_, true,
                        [this](double Omega) -> const la::MCK& { return at_odd(Omega); }};

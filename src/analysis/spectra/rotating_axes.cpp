@@ -54,6 +54,11 @@ double difference(const la::BlockMatrix<6>& a, const la::BlockMatrix<6>& b) {
   return m / std::max(largest(a), 1e-300);
 }
 
+bool larger_than_rounding(const Matrix<6>& change, const Matrix<6>& of) {
+  constexpr double rounding = 1e-13;
+  return change.cwiseAbs().maxCoeff() > rounding * of.cwiseAbs().maxCoeff();
+}
+
 /// Differences below this are no periodicity: sagging rotors and their unbalance leave parts per
 /// million.
 constexpr double steady = 1e-6;
@@ -70,7 +75,7 @@ constexpr double unbalanced_share = 1e-8;
 /// constant matrices.
 class Coupling {
  public:
-  Coupling(const la::MCK& constant, std::span<const unsigned char> active) : constant_(constant) {
+  Coupling(const la::MCK& constant, std::span<const unsigned char> active) {
     la::ModeOptions options;
     options.count = 8;
     for (la::Mode& m : la::quadratic_modes(constant, active, options)) {
@@ -82,14 +87,14 @@ class Coupling {
       modes_.push_back(std::move(m));
     }
   }
-  /// Largest rate, 1/s, that the difference to the constant matrices gives one of the motions from
-  /// another: |x_i^H (Q - Q0)(lambda_j) x_j| of motions with |x^H Q0' x| = 1.
-  double rate(const la::MCK& m) const {
+  /// Largest rate, 1/s, that the difference of two sets of matrices gives one of the motions from
+  /// another: |x_i^H (Q - R)(lambda_j) x_j| of motions with |x^H Q0' x| = 1.
+  double rate(const la::MCK& m, const la::MCK& other) const {
     double most = 0.0;
     VecXc M1, C1, K1, M0, C0, K0;
     for (const la::Mode& j : modes_) {
       la::multiply(m, j.x, M1, C1, K1);
-      la::multiply(constant_, j.x, M0, C0, K0);
+      la::multiply(other, j.x, M0, C0, K0);
       const VecXc y = j.lambda * (j.lambda * (M1 - M0) + (C1 - C0)) + (K1 - K0);
       for (const la::Mode& i : modes_)
         most = std::max({most, std::abs(i.x.dot(y)), std::abs(i.x.conjugate().dot(y))});
@@ -107,7 +112,6 @@ class Coupling {
   }
 
  private:
-  const la::MCK& constant_;
   std::vector<la::Mode> modes_;
 };
 
@@ -121,34 +125,6 @@ std::vector<unsigned char> active_of(std::span<const unsigned char> nodes, Index
   return out;
 }
 
-/// 1 and the cosines and sines of these multiples of an angle that grows at W, rad/s, with their first
-/// two rates.
-struct Parts {
-  Parts(const std::vector<Index>& orders, double theta, double W) {
-    for (const Index m : orders) {
-      const double w = static_cast<double>(m), c = std::cos(w * theta), s = std::sin(w * theta);
-      if (m == 0) {
-        add(1.0, 0.0, 0.0);
-        continue;
-      }
-      add(c, -w * W * s, -w * w * W * W * c);
-      add(s, w * W * c, -w * w * W * W * s);
-    }
-  }
-  std::vector<double> value, rate, acceleration;
-
- private:
-  void add(double f, double g, double gg) {
-    value.push_back(f);
-    rate.push_back(g);
-    acceleration.push_back(gg);
-  }
-};
-
-Index parts_of(const std::vector<Index>& orders) {
-  return 2 * static_cast<Index>(orders.size()) - (orders.front() == 0 ? 1 : 0);
-}
-
 }  // namespace
 
 void RotatingAxes::require(const SteadySystem& running) {
@@ -160,12 +136,12 @@ void RotatingAxes::require(const SteadySystem& running) {
         "give the shafts one speed_ratio, or use a transient step");
 }
 
-RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
+RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Harmonics harmonics, Motion motion)
     : linear_(linear),
       motion_(linear.system(), motion, linear.running().spinning(), MotionReduction::Twist::held),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
-  WHIRL_EXPECTS(harmonics >= 0);
+  WHIRL_EXPECTS(harmonics.least >= 1 && harmonics.most >= harmonics.least);
   require(linear.running());
   find_ratio(Omega);
   // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and
@@ -175,24 +151,26 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   const la::MCK fixed = raw_;
   const Coupling coupling(first, motion_.active());
   frequencies_ = coupling.frequencies();
-  double varies = 0, half = 0, joined = 0;
+  double joined = 0, half = 0;
   for (const double theta : {0.7, 1.9, 2.6}) {
     sample(Omega, theta, {});
-    joined = std::max(joined, coupling.rate(turned_));
-    varies = std::max({varies, difference(first.M, turned_.M), difference(first.K, turned_.K)});
+    joined = std::max(joined, coupling.rate(turned_, first));
     turning_ =
         turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
     const la::MCK here = turned_;
     sample(Omega, theta + pi, {});
-    half = std::max({half, difference(here.M, turned_.M), difference(here.K, turned_.K)});
+    half = std::max(half, coupling.rate(turned_, here));
   }
-  harmonics_ = varies > steady ? 1 : 0;
+  const double nothing = negligible * std::abs(speed(Omega));
+  harmonics_ = joined > nothing ? harmonics.least : 0;
+  // the sag of a shaft has the period of a revolution, but joins next to nothing
+  step_ = half > nothing ? 1 : 2;
   // A harmonic left out is joined to the constant part by those before it.
-  const double share = joined / std::max(std::abs(speed(Omega)), 1e-300);
-  while (harmonics_ > 0 && harmonics_ < harmonics &&
+  const double slowest = std::isnan(harmonics.slowest) ? Omega : harmonics.slowest;
+  const double share = joined / std::max(std::abs(speed(slowest)), 1e-300);
+  while (harmonics_ > 0 && harmonics_ < harmonics.most &&
          !(std::pow(share, static_cast<double>(harmonics_ + 1)) < negligible))
     ++harmonics_;
-  step_ = half > steady ? 1 : 2;
   if (harmonics_ == 0) {
     pattern_ = &linear.system().pattern();
     active_.assign(motion_.active().begin(), motion_.active().end());
@@ -264,14 +242,17 @@ bool RotatingAxes::still_balanced(double Omega) {
   return true;
 }
 
-void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
+void RotatingAxes::sample(double Omega, double theta, Complex lambda, bool without_series) {
   WHIRL_EXPECTS(std::isfinite(theta));
   if (!still_balanced(Omega)) linear_.move_to(Omega);
   moved_ = true;
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
-  const bool inside = running.tangent_at(e.state.frames, Omega, e.state.q, theta / ratio_, raw_);
+  const bool inside =
+      without_series ? running.tangent_without_series_at(e.state.frames, Omega, e.state.q,
+                                                         theta / ratio_, raw_)
+                     : running.tangent_at(e.state.frames, Omega, e.state.q, theta / ratio_, raw_);
   running.set_whirl(0.0);
   if (!inside)
     throw run_error("E76", "no linearisation: the state lies outside the range of an element");
@@ -303,41 +284,143 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
     sample(Omega, 0.0, lambda);
     return turned_;
   }
-  std::vector<Index> orders;
-  for (Index h = 0; h <= harmonics_; ++h)
-    orders.push_back(step_ * h);
-  balance(Omega, lambda, orders, hill_);
+  balance(Omega, lambda, orders(), balance_, hill_);
   return hill_;
 }
 
+std::vector<Index> RotatingAxes::orders() const {
+  std::vector<Index> out;
+  for (Index h = 0; h <= harmonics_; ++h)
+    out.push_back(step_ * h);
+  return out;
+}
+
 void RotatingAxes::balance(double Omega, Complex lambda, const std::vector<Index>& orders,
-                           la::MCK& out) {
-  // Galerkin's method by the trapezoidal rule: exact up to the harmonic of its points less those of
-  // the product.
-  const Index parts = parts_of(orders), points = 2 * parts + 2;
+                           std::unique_ptr<HarmonicBalance>& kept, la::MCK& out) {
+  if (!kept) kept = std::make_unique<HarmonicBalance>(orders, step_);
+  const HarmonicBalance& of = *kept;
+  // the trapezoidal rule: exact up to the harmonic of its points less those of the product
+  const Index points = constant() ? 1 : 2 * of.parts() + 2;
+  const bool in_series = !constant() && !linear_.running().series().empty();
+  const double W = speed(Omega);
   const la::BlockPattern& p = linear_.system().pattern();
   for (la::BlockMatrix<6>* m : {&out.M, &out.C, &out.K})
     m->set_zero();
+  changing_.assign(idx(p.blocks()), -1);
+  changes_.clear();
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(step_ * points) * static_cast<double>(n);
-    if (n == 0 || !constant()) sample(Omega, theta, lambda);
-    const Parts f(orders, theta, speed(Omega));
-    for (Index i = 0; i < p.size(); ++i)
-      for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
-        const Index j = p.cols()[idx(k)];
-        const auto M = turned_.M.block(k), C = turned_.C.block(k), K = turned_.K.block(k);
-        for (Index a = 0; a < parts; ++a) {
-          const double share = (a == 0 && orders.front() == 0 ? 1.0 : 2.0);
-          const double w = share / static_cast<double>(points) * f.value[idx(a)];
-          for (Index b = 0; b < parts; ++b) {
-            const Index t = out.K.pattern().slot(parts * i + a, parts * j + b);
-            const double value = f.value[idx(b)], rate = f.rate[idx(b)];
-            out.M.block(t) += (w * value) * M;
-            out.C.block(t) += (w * value) * C + (2.0 * w * rate) * M;
-            out.K.block(t) += (w * value) * K + (w * rate) * C + (w * f.acceleration[idx(b)]) * M;
-          }
-        }
+    sample(Omega, theta, lambda, in_series);
+    if (n == 0)
+      first_ = turned_;
+    else
+      note_changes(of, theta, points);
+  }
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
+      const Index j = p.cols()[idx(k)];
+      of.add(0, i, j, W, first_.M.block(k), first_.C.block(k), first_.K.block(k), out);
+      if (changing_[idx(k)] < 0) continue;
+      const Changes& c = changes_[idx(changing_[idx(k)])];
+      for (Index h = 0; h < of.waves(); ++h) {
+        const Eigen::Map<const Matrix<6>> M(c.col(h).data()), C(c.col(h).data() + 36),
+            K(c.col(h).data() + 72);
+        if (larger_than_rounding(M, first_.M.block(k)) ||
+            larger_than_rounding(C, first_.C.block(k)) ||
+            larger_than_rounding(K, first_.K.block(k)))
+          of.add(h, i, j, W, M, C, K, out);
       }
+    }
+  if (in_series) add_series(Omega, orders, out);
+}
+
+void RotatingAxes::note_changes(const HarmonicBalance& of, double theta, Index points) {
+  const la::BlockPattern& p = linear_.system().pattern();
+  Eigen::Matrix<double, 108, 1> by;
+  const auto differ = [&](const la::BlockMatrix<6>& first, const la::BlockMatrix<6>& now, Index k,
+                          Index at) {
+    Eigen::Map<Matrix<6>> change(by.data() + at);
+    change = now.block(k) - first.block(k);
+    return larger_than_rounding(change, first.block(k));
+  };
+  VecX weights;
+  of.weigh(theta, points, weights);
+  for (Index k = 0; k < p.blocks(); ++k) {
+    const bool of_M = differ(first_.M, turned_.M, k, 0);
+    const bool of_C = differ(first_.C, turned_.C, k, 36);
+    const bool of_K = differ(first_.K, turned_.K, k, 72);
+    if (!of_M && !of_C && !of_K) continue;
+    if (changing_[idx(k)] < 0) {
+      changing_[idx(k)] = static_cast<Index>(changes_.size());
+      changes_.push_back(Changes::Zero(108, of.waves()));
+    }
+    changes_[idx(changing_[idx(k)])].noalias() += by * weights.transpose();
+  }
+}
+
+namespace {
+
+/// A compliance in series, in axes that turn with the shaft: its moments are M = B x of its two nodes.
+struct InSeries {
+  const system::SeriesCompliance& of;
+  Eigen::Matrix<double, 2, 12> B;
+  MatX mean;  ///< of d2W/dm2 over the parts, balanced by Galerkin's method
+};
+
+}  // namespace
+
+void RotatingAxes::add_series(double Omega, const std::vector<Index>& orders, la::MCK& out) {
+  SteadySystem& running = linear_.running();
+  const Equilibrium& e = linear_.equilibrium();
+  const Index parts = count_parts(orders);
+  std::size_t count = 0;
+  for (const system::SeriesCompliance& c : running.series())
+    count = std::max(count, c.number + 1);
+  std::vector<InSeries> all;
+  std::vector<Vec2> kinks(count, Vec2::Zero());
+  VecX r;
+  for (const system::SeriesCompliance& c : running.series()) {
+    all.push_back({c, {}, MatX::Zero(2 * parts, 2 * parts)});
+    for (Index k = 0; k < 2; ++k) {
+      kinks[c.number][k] = 1.0;
+      if (!running.series_force_at(e.state.frames, Omega, e.state.q, 0.0, kinks, r)) return;
+      kinks[c.number][k] = 0.0;
+      for (Index i = 0; i < 2; ++i)
+        all.back().B.block<1, 6>(k, 6 * i) = -r.segment<6>(6 * c.nodes[idx(i)]).transpose();
+    }
+  }
+  // beside the quarters, where what breathes switches
+  const Index points = 16 * (orders.back() / step_ + 4);
+  for (Index n = 0; n < points; ++n) {
+    const double theta =
+        two_pi / static_cast<double>(step_ * points) * (static_cast<double>(n) + 0.5);
+    const VecX f = waves_at(orders, theta);
+    // d2W/dm2 knows the direction of m alone, which is that of M: the mean kink goes with the moment
+    const auto add = [&](const system::Workspace& w) {
+      for (InSeries& c : all) {
+        const Mat2 compliance = c.of.law(w)(c.of.moment(w)).slope;
+        for (Index a = 0; a < parts; ++a)
+          for (Index b = 0; b < parts; ++b) {
+            const double share = a == 0 && orders.front() == 0 ? 1.0 : 2.0;
+            c.mean.block<2, 2>(2 * a, 2 * b) +=
+                share / static_cast<double>(points) * f[a] * f[b] * compliance;
+          }
+      }
+    };
+    if (!running.visit_series_at(e.state.frames, Omega, e.state.q, theta / ratio_, add)) return;
+  }
+  for (const InSeries& c : all) {
+    const MatX give = MatX::Identity(2 * parts, 2 * parts) + c.of.stiffness * c.mean;
+    const MatX lost = give.transpose().partialPivLu().solve(c.mean.transpose()).transpose();
+    for (Index i = 0; i < 2; ++i)
+      for (Index j = 0; j < 2; ++j)
+        for (Index a = 0; a < parts; ++a)
+          for (Index b = 0; b < parts; ++b) {
+            const Index t = out.K.pattern().slot(parts * c.of.nodes[idx(i)] + a,
+                                                 parts * c.of.nodes[idx(j)] + b);
+            out.K.block(t) -= c.B.block<2, 6>(0, 6 * i).transpose() *
+                              lost.block<2, 2>(2 * a, 2 * b) * c.B.block<2, 6>(0, 6 * j);
+          }
   }
 }
 
@@ -372,26 +455,60 @@ double RotatingAxes::constant_share(const VecXc& x) const {
   return all > 0 ? own / all : 0.0;
 }
 
-VecXc RotatingAxes::first_order_of(const VecX& x) const {
-  const system::System& s = linear_.system();
+double RotatingAxes::last_share(const VecXc& x) const {
+  if (harmonics_ == 0) return 0.0;
+  double last = 0, all = 0;
   const Index parts = 2 * harmonics_ + 1;
+  for (Index i = 0; i < linear_.system().nodes(); ++i)
+    for (Index a = 0; a < parts; ++a) {
+      const double size = (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
+      all += size;
+      if (a + 2 >= parts) last += size;
+    }
+  return all > 0 ? std::sqrt(last / all) : 0.0;
+}
+
+void RotatingAxes::note_size(const VecX& x, Index parts) {
+  // of those a single one apart every other may be nothing
+  const Index some = step_ == 1 ? 4 : 2;
+  const Index last = constant() ? 0 : std::min<Index>(some, (parts - 2) / 2 * 2);
+  for (Index i = 0; i < linear_.system().nodes(); ++i) {
+    if (linear_.system().node(i).scalar) continue;
+    for (Index a = 0; a < parts; ++a) {
+      const double size = x.segment<3>(6 * (parts * i + a)).norm();
+      steady_size_ = std::max(steady_size_, size);
+      if (a + last >= parts) steady_last_ = std::max(steady_last_, size);
+    }
+  }
+}
+
+std::vector<VecXc> RotatingAxes::in_fixed_axes(const VecX& x, const std::vector<Index>& orders,
+                                               Index count) const {
+  const system::System& s = linear_.system();
+  const Index parts = count_parts(orders);
   const Complex i(0, 1);
-  VecXc a = VecXc::Zero(s.size());
+  std::vector<VecXc> out(idx(count + 1), VecXc::Zero(s.size()));
   for (Index n = 0; n < s.nodes(); ++n) {
     const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
     const Matrix<6> lateral = -J * J;
-    const auto part = [&](Index k) { return x.segment<6>(6 * (parts * n + k)).cast<Complex>(); };
-    Eigen::Matrix<Complex, 6, 1> sum = (lateral - i * J) * part(0);
-    for (Index h = 1; h <= harmonics_; ++h) {
-      // cos and sin of m theta within axes that turn: cos theta and sin theta times those
-      const auto c = part(2 * h - 1);
-      const auto d = part(2 * h);
-      if (step_ * h == 2) sum += 0.5 * ((lateral + i * J) * c + (J - i * lateral) * d);
-      if (step_ * h == 1) sum += (Matrix<6>::Identity() - lateral) * (c - i * d);
+    const Matrix<6> along = Matrix<6>::Identity() - lateral;
+    const auto add = [&](Index h, const Eigen::Matrix<Complex, 6, 1>& a) {
+      if (h <= count) out[idx(h)].segment<6>(6 * n) += a;
+    };
+    Index part = 0;
+    for (const Index m : orders) {
+      // Re(c exp(i m theta)) in axes that turn with theta
+      Eigen::Matrix<Complex, 6, 1> c = x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
+      if (m > 0) c -= i * x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
+      const Eigen::Matrix<Complex, 6, 1> forth = (lateral - i * J) * c,
+                                         back = (lateral + i * J) * c;
+      add(m + 1, (m == 0 ? 1.0 : 0.5) * forth);
+      if (m > 1) add(m - 1, 0.5 * back);
+      if (m == 1) add(0, 0.5 * back.real().cast<Complex>());
+      add(m, along * c);
     }
-    a.segment<6>(6 * n) = sum;
   }
-  return a;
+  return out;
 }
 
 VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
@@ -420,24 +537,29 @@ VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
   if (other > std::max(1e-6 * size, nothing))
     throw run_error("E88", "forces once a revolution that do not turn with the asymmetric rotor",
                     "a transient step has no such limit");
-  const auto direct = la::make_direct_solver<double>(*pattern_, active_);
-  if (direct->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
+  steady_response_.resize(0);
+  if (!direct_) direct_ = la::make_direct_solver<double>(*pattern_, active_);
+  if (direct_->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
     return VecXc::Constant(f.size(), Complex(nan, nan));
-  direct->solve(x);
-  const VecXc a = first_order_of(x);
+  direct_->solve(x);
+  steady_size_ = steady_last_ = 0.0;
+  note_size(x, parts);
+  response_size_ = steady_size_;
+  const VecXc a = in_fixed_axes(x, orders(), 1).back();
+  steady_response_ = std::move(x);
   return backward ? VecXc(a.conjugate()) : a;
 }
 
 VecX RotatingAxes::unbalanced(double Omega, const std::vector<Index>& orders) {
   const system::System& s = linear_.system();
   const Equilibrium& e = linear_.equilibrium();
-  const Index parts = parts_of(orders), points = 4 * (orders.back() + 2);
+  const Index parts = count_parts(orders), points = 4 * (orders.back() + 2);
   VecX out = VecX::Zero(6 * parts * s.nodes()), r(s.size());
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(points) * static_cast<double>(n);
     if (!linear_.running().residual_at(e.state.frames, Omega, e.state.q, theta / ratio_, r))
       throw run_error("E76", "no linearisation: the state lies outside the range of an element");
-    const Parts f(orders, theta, 1.0);
+    const VecX f = waves_at(orders, theta);
     for (Index i = 0; i < s.nodes(); ++i) {
       const Mat3& chart = e.state.frames.axes(i);
       const Matrix<6> J = turn(s, chart, i, 0.0, true);
@@ -445,8 +567,7 @@ VecX RotatingAxes::unbalanced(double Omega, const std::vector<Index>& orders) {
       const Vector<6> turned = turn(s, chart, i, theta, false).transpose() * lateral;
       for (Index a = 0; a < parts; ++a) {
         const double share = (a == 0 && orders.front() == 0 ? 1.0 : 2.0);
-        out.segment<6>(6 * (parts * i + a)) +=
-            share / static_cast<double>(points) * f.value[idx(a)] * turned;
+        out.segment<6>(6 * (parts * i + a)) += share / static_cast<double>(points) * f[a] * turned;
       }
     }
   }
@@ -459,11 +580,12 @@ const la::MCK& RotatingAxes::at_odd(double Omega) {
     // half a revolution joins every other multiple to that
     for (Index m = step_ == 1 ? 0 : 1; m <= 2 * harmonics_ + 1; m += step_)
       odd_.push_back(m);
-    odd_pattern_ = make_pattern(parts_of(odd_));
-    odd_active_ = active_of(motion_.active(), parts_of(odd_));
+    odd_pattern_ = make_pattern(count_parts(odd_));
+    odd_active_ = active_of(motion_.active(), count_parts(odd_));
     odd_hill_ = la::MCK(*odd_pattern_);
   }
-  balance(Omega, hysteretic() ? Complex(0, std::abs(speed(Omega))) : Complex(), odd_, odd_hill_);
+  balance(Omega, hysteretic() ? Complex(0, std::abs(speed(Omega))) : Complex(), odd_, odd_balance_,
+          odd_hill_);
   return odd_hill_;
 }
 
@@ -476,34 +598,23 @@ std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
   for (Index k = 0; k < x.size(); ++k)
     if (!odd_active_[idx(k)]) x[k] = 0.0;
   std::vector<VecXc> out(idx(count + 1), VecXc::Zero(s.size()));
-  const auto direct = la::make_direct_solver<double>(*odd_pattern_, odd_active_);
-  if (direct->factor(matrices, 0.0, 0.0, 1.0) != la::Status::ok) {
+  if (!odd_direct_) odd_direct_ = la::make_direct_solver<double>(*odd_pattern_, odd_active_);
+  if (odd_direct_->factor(matrices, 0.0, 0.0, 1.0) != la::Status::ok) {
     for (VecXc& a : out)
       a.setConstant(Complex(nan, nan));
     return out;
   }
-  direct->solve(x);
-  const Index parts = parts_of(odd_);
-  const Complex i(0, 1);
-  for (Index n = 0; n < s.nodes(); ++n) {
-    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
-    const Matrix<6> lateral = -J * J;
-    const Matrix<6> along = Matrix<6>::Identity() - lateral;
-    const auto add = [&](Index h, const Eigen::Matrix<Complex, 6, 1>& a) {
-      if (h <= count) out[idx(h)].segment<6>(6 * n) += a;
-    };
-    Index part = 0;
-    for (const Index m : odd_) {
-      // Re(c exp(i m theta)) in axes that turn with theta
-      Eigen::Matrix<Complex, 6, 1> c = x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
-      if (m > 0) c -= i * x.segment<6>(6 * (parts * n + part++)).cast<Complex>();
-      const Eigen::Matrix<Complex, 6, 1> forth = (lateral - i * J) * c,
-                                         back = (lateral + i * J) * c;
-      add(m + 1, (m == 0 ? 1.0 : 0.5) * forth);
-      if (m > 1) add(m - 1, 0.5 * back);
-      if (m == 1) add(0, 0.5 * back.real().cast<Complex>());
-      add(m, along * c);
-    }
+  odd_direct_->solve(x);
+  const Index parts = count_parts(odd_);
+  constexpr double nothing = 1e-6;  // beside the response: rounding, of a rotor without weight
+  steady_size_ = nothing * response_size_;
+  steady_last_ = 0.0;
+  note_size(x, parts);
+  out = in_fixed_axes(x, odd_, count);
+  if (step_ == 2 && steady_response_.size() > 0) {
+    const std::vector<VecXc> of_response = in_fixed_axes(steady_response_, orders(), count);
+    for (std::size_t h = 0; h < out.size(); ++h)
+      out[h] += of_response[h];
   }
   if (W < 0)
     for (VecXc& a : out)

@@ -17,6 +17,9 @@
 // Dynamics of Rotating Machines, 2010, ch. 7.
 #pragma once
 #include <analysis/linearizer.hpp>
+#include <analysis/spectra/harmonic_balance.hpp>
+#include <la/direct.hpp>
+#include <memory>
 #include <optional>
 
 namespace whirl::analysis {
@@ -27,13 +30,21 @@ struct Resonance {
   double frequency = 0;  ///< of one of them there, in rotating axes, rad/s
 };
 
+/// H of Hill's equations where the matrices are periodic.
+struct Harmonics {
+  Index least = 1, most = 3;
+  /// Of the reference, rad/s: the slowest speed to come, at which more harmonics join; NaN: that of the
+  /// probe.
+  double slowest = nan;
+};
+
 class RotatingAxes {
  public:
-  /// harmonics: most of H where the matrices are periodic; 0 is enough on isotropic supports and is
-  /// chosen then whatever is asked for, and fewer where what varies (a sagging shaft) joins motions so
-  /// little that bands of the rest would grow by less than 1e-6 of the speed.
+  /// harmonics: 0 is enough on isotropic supports and is chosen then whatever is asked for, and fewer than
+  /// most where what varies (a sagging shaft) joins motions so little that bands of the rest would grow by
+  /// less than 1e-6 of the speed.
   /// @throws Error E88, the lines turn at different speeds, or what is unequal turns both ways.
-  RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
+  RotatingAxes(Linearizer& linear, double Omega_probe, Harmonics harmonics = {},
                Motion motion = Motion::lateral);
 
   /// @throws Error E88, the lines turn at different speeds.
@@ -50,6 +61,8 @@ class RotatingAxes {
   /// Constant in rotating axes.
   bool constant() const { return harmonics_ == 0; }
   Index harmonics() const { return harmonics_; }
+  /// 1 or 2: what varies has the period of one or of half a revolution of the axes.
+  Index step() const { return step_; }
   /// Multiples of the speed at which what varies can join two motions: 1 .. this.
   Index joined_multiples() const { return step_ * harmonics_ + 1; }
   bool hysteretic() const { return linear_.hysteretic(); }
@@ -74,6 +87,12 @@ class RotatingAxes {
   std::vector<Complex> poles(double low, double high);
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
   double constant_share(const VecXc& x) const;
+  /// Share of the last harmonic of a motion, 0 .. 1 (0 when constant()): what more of them would add is
+  /// less.
+  double last_share(const VecXc& x) const;
+  /// Of the steady motion last solved for (response() or multiples()): how large its last harmonics are,
+  /// over the largest displacement.
+  double last_share() const { return steady_size_ > 0 ? steady_last_ / steady_size_ : 0.0; }
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
   VecXc constant_part(const VecXc& x) const;
   /// Symmetric part of the mean K~ (negative eigenvalues: what the rotation has made unstable if
@@ -91,18 +110,30 @@ class RotatingAxes {
   /// Steady motion besides that under what turns: of weight and other forces of fixed direction, which
   /// meet another stiffness or inertia at every angle. Amplitudes a_h of Re(a_h exp(i h w t)),
   /// w = |speed(Omega)|, h = 0 .. count, about the equilibrium of the mean; a_0 real; a_1 means nothing
-  /// (response()). Lateral; NaN as response(). On isotropic supports the mean and twice the speed are
+  /// (response()). What the forces of the response() before, at this speed, do at other multiples than once a
+  /// revolution is in it. Lateral; NaN as response(). On isotropic supports the mean and twice the speed are
   /// all: the weight turns backwards in the axes.
   /// @pre count >= 2.
   std::vector<VecXc> multiples(double Omega, int count);
 
  private:
+  /// M, C and K of a block less those at the first angle, each as (36), as waves of the angle.
+  using Changes = Eigen::Matrix<double, 108, Eigen::Dynamic>;
+  /// Takes a steady motion into account of last_share().
+  void note_size(const VecX& x, Index parts);
   /// Of the lines whose matrices turn with them; where none do, of the first that turns.
   void find_ratio(double Omega);
-  VecXc first_order_of(const VecX& x) const;
+  /// Of the motion and of what turns with the rotor; 0: the constant part.
+  std::vector<Index> orders() const;
+  /// Amplitudes of the multiples 0 .. count of the angle, of a motion in these parts.
+  std::vector<VecXc> in_fixed_axes(const VecX& x, const std::vector<Index>& orders,
+                                   Index count) const;
   /// Harmonic balance in sines and cosines of these multiples of the angle of the axes, ascending; 0:
   /// the constant part. out stands on a pattern of make_pattern().
-  void balance(double Omega, Complex lambda, const std::vector<Index>& orders, la::MCK& out);
+  void balance(double Omega, Complex lambda, const std::vector<Index>& orders,
+               std::unique_ptr<HarmonicBalance>& kept, la::MCK& out);
+  /// By what blocks differ at this angle from the first, turned_ from first_.
+  void note_changes(const HarmonicBalance& of, double theta, Index points);
   /// Node i, part j -> node parts i + j: neighbours stay neighbours.
   std::unique_ptr<la::BlockPattern> make_pattern(Index parts) const;
   /// Matrices of multiples(), as at().
@@ -113,7 +144,10 @@ class RotatingAxes {
   /// What is unbalanced at the equilibrium, in these parts.
   VecX unbalanced(double Omega, const std::vector<Index>& orders);
   /// Matrices in rotating axes at one angle of these, on the system's pattern, into turned_.
-  void sample(double Omega, double theta, Complex lambda);
+  void sample(double Omega, double theta, Complex lambda, bool without_series = false);
+  /// Takes compliances in series into account, whose moments have the harmonics of the motion. They are
+  /// not in out. @pre the equilibrium is at this speed.
+  void add_series(double Omega, const std::vector<Index>& orders, la::MCK& out);
   /// The equilibrium at hand serves this speed too.
   bool still_balanced(double Omega);
   Linearizer& linear_;
@@ -122,15 +156,21 @@ class RotatingAxes {
   double ratio_ = 1.0;  ///< speed of the axes over the reference's
   Index harmonics_ = 0, step_ = 2;
   std::vector<double> frequencies_;  ///< rad/s, of some motions of the constant matrices
+  VecX steady_response_;             ///< of response(), in parts
+  double steady_size_ = 0, steady_last_ = 0, response_size_ = 0;  ///< m
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
-  la::MCK turned_, raw_, hill_;
+  la::MCK turned_, first_, raw_, hill_;
+  std::vector<Index> changing_;  ///< of the pattern's blocks: of changes_; -1: it does not
+  std::vector<Changes> changes_;
+  std::unique_ptr<HarmonicBalance> balance_, odd_balance_;  ///< made when first wanted
   /// Of multiples(): made when first wanted.
   std::vector<Index> odd_;
   std::unique_ptr<la::BlockPattern> odd_pattern_;
   std::vector<unsigned char> odd_active_;
   la::MCK odd_hill_;
+  std::unique_ptr<la::DirectSolver<double>> direct_, odd_direct_;  ///< made when first wanted
 };
 
 }  // namespace whirl::analysis
