@@ -1,5 +1,6 @@
 #include <steps/resonances.hpp>
 
+#include <analysis/response/unbalance.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <analysis/spectra/rotating_axes.hpp>
 #include <core/error.hpp>
@@ -115,7 +116,7 @@ void refine_at_poles(results::FrequencyStep& s, std::vector<double>& grid) {
   try {
     analysis::Linearizer linear(s.linear);
     // near enough to put speeds there: the response itself takes as many harmonics as it needs
-    analysis::RotatingAxes axes(linear, grid.back());
+    analysis::RotatingAxes axes(linear, analysis::fastest_of(grid));
     for (const Complex pole : axes.poles(grid.front(), grid.back()))
       add_places(pole.real(), pole.imag() / std::abs(pole), places);
   } catch (const Error& e) {

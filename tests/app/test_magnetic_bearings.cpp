@@ -471,6 +471,23 @@ TEST(MagneticBearings, Messages) {
 
 }  // namespace
 
+// At 100 Hz the rotor moves along its axis on a spring that nothing damps, and no loop sees.
+TEST(MagneticBearings, SensitivityBesideAMotionThatNoLoopSees) {
+  std::string deck = mass(magnet + control(1.5e4, 1e5, 32),
+                          "[[bearing]]\nname = \"spring\"\nat = \"mass\"\ntype = \"linear\"\n"
+                          "kxx = \"11843525.281307230 N/m\"\n"
+                          "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\n"
+                          "frequency = { values = [\"99 Hz\", \"100 Hz\", \"101 Hz\"] }\n");
+  const std::string held = "\"x\", \"rx\"";
+  deck.replace(deck.find(held), held.size(), "\"rx\"");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("s_curves.csv");
+  const std::size_t k = t.column("AMB axis 1 sensitivity [-]");
+  const double before = t.rows.at(0).at(k), there = t.rows.at(1).at(k), behind = t.rows.at(2).at(k);
+  EXPECT_NEAR(there, 0.5 * (before + behind), 1e-4);
+}
+
 // 294 N of weight; an integrator asks for ever more current, and nothing else resists.
 TEST(MagneticBearings, ALoadBeyondTheirCapacityIsSaid) {
   const std::string pid = control(1.5e4, 1e5, 32);

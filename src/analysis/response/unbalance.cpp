@@ -40,7 +40,7 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
 void UnbalanceSolver::make_axes() {
   if (options_.harmonics < 0) options_.harmonics = enough_harmonics(linear_, options_.speeds);
   const Index H = std::max<Index>(options_.harmonics, 1);
-  axes_ = std::make_unique<RotatingAxes>(linear_, options_.speeds.back(), Harmonics{H, H});
+  axes_ = std::make_unique<RotatingAxes>(linear_, fastest_of(options_.speeds), Harmonics{H, H});
 }
 
 void UnbalanceSolver::put_multiple(const VecXc& a, SteadyPoint& p) const {
@@ -80,13 +80,19 @@ VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
 
 VecXc UnbalanceSolver::turn(double Omega, const VecXc& forcing, bool with_multiples,
                             SteadyPoint& p) {
+  if (with_multiples) {
+    std::vector<VecXc> all = axes_->multiples(Omega, -forcing, options_.multiples);
+    for (VecXc& a : all)
+      linear_.system().complete(linear_.equilibrium().state, a);
+    p.left_out = axes_->last_share();
+    VecXc once = all[1];
+    put_multiples(std::move(all), p);
+    return once;
+  }
   VecXc a = axes_->response(Omega, -forcing);
   if (Omega < 0) a = a.conjugate().eval();
   linear_.system().complete(linear_.equilibrium().state, a);
   p.left_out = axes_->last_share();
-  if (!with_multiples) return a;
-  put_multiples(turn_unevenly(Omega, a), p);
-  p.left_out = std::max(p.left_out, axes_->last_share());
   return a;
 }
 
@@ -96,9 +102,9 @@ namespace {
 struct Seen {
   Seen(RotatingAxes& axes, Linearizer& linear, double Omega) {
     linear.move_to(Omega);  // others were made meanwhile
-    once = axes.response(Omega, -linear.forcing().front());
-    multiples = axes.multiples(Omega, 3);
-    multiples[1].setZero();  // means nothing
+    multiples = axes.multiples(Omega, -linear.forcing().front(), 3);
+    once = multiples[1];
+    multiples[1].setZero();
   }
   VecXc once;
   std::vector<VecXc> multiples;
@@ -118,14 +124,19 @@ double change(const system::System& s, const Seen& a, const Seen& b) {
 
 }  // namespace
 
+double fastest_of(const std::vector<double>& speeds) {
+  WHIRL_EXPECTS(!speeds.empty());
+  return std::abs(speeds.front()) > std::abs(speeds.back()) ? speeds.front() : speeds.back();
+}
+
 Index enough_harmonics(Linearizer& linear, const std::vector<double>& speeds, Index most) {
   constexpr int looks = 8;
   constexpr double nothing = 1e-4;
   constexpr Index more = 2;
   const auto with = [&](Index H) {
-    return std::make_unique<RotatingAxes>(linear, speeds.back(), Harmonics{H, H});
+    return std::make_unique<RotatingAxes>(linear, fastest_of(speeds), Harmonics{H, H});
   };
-  auto axes = std::make_unique<RotatingAxes>(linear, speeds.back());
+  auto axes = std::make_unique<RotatingAxes>(linear, fastest_of(speeds));
   if (axes->constant()) return 0;
   auto finer = with(axes->harmonics() + more);
   // by value, not by number: speeds put in at peaks change nothing
@@ -143,14 +154,6 @@ Index enough_harmonics(Linearizer& linear, const std::vector<double>& speeds, In
     }
   }
   return axes->harmonics();
-}
-
-std::vector<VecXc> UnbalanceSolver::turn_unevenly(double Omega, const VecXc& once) {
-  std::vector<VecXc> out = axes_->multiples(Omega, options_.multiples);
-  for (VecXc& a : out)
-    linear_.system().complete(linear_.equilibrium().state, a);
-  out[1] = once;
-  return out;
 }
 
 VecXc UnbalanceSolver::force_of(std::size_t order, double Omega) {
@@ -450,7 +453,9 @@ UnbalanceResponse UnbalanceSolver::run() {
 PointAmplitude UnbalanceSolver::multiple_at(double Omega, std::size_t h, std::size_t probe) {
   if (!axes_) return at(Omega, false).multiple[h][probe];
   linear_.move_to(Omega);
-  VecXc a = axes_->multiples(Omega, options_.multiples)[h];
+  // what turns makes odd ones alone
+  const VecXc forces = h % 2 == 1 ? VecXc(-linear_.forcing().front()) : VecXc();
+  VecXc a = axes_->multiples(Omega, forces, options_.multiples)[h];
   linear_.system().complete(linear_.equilibrium().state, a);
   return amplitude_at(linear_, a, options_.probes[probe].point);
 }

@@ -34,6 +34,9 @@ struct UnbalanceOptions {
   int threads = 1;  ///< 0: all processors; the results are the same for any number
 };
 
+/// The one of largest magnitude. @pre ascending, not empty.
+double fastest_of(const std::vector<double>& speeds);
+
 /// Harmonics of Hill's equations with which the steady motion of an asymmetric rotor changes by no more than
 /// 1e-4 when there are two more, at some of these speeds: on unequal supports they are many where it turns
 /// slowly. 0 on isotropic ones; `most` if that is not enough.
@@ -144,8 +147,6 @@ class UnbalanceSolver {
   void make_axes();
   /// The motion at the speed itself of a rotor that turns unevenly, its multiples into p.
   VecXc turn(double Omega, const VecXc& forcing, bool with_multiples, SteadyPoint& p);
-  /// Amplitudes of all multiples of a rotor that turns unevenly; once: of the speed itself.
-  std::vector<VecXc> turn_unevenly(double Omega, const VecXc& once);
   void put_multiple(const VecXc& a, SteadyPoint& p) const;
   /// The same of all multiples; of 0 about the equilibrium.
   void put_multiples(std::vector<VecXc> amplitudes, SteadyPoint& p) const;

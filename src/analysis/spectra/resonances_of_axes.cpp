@@ -17,6 +17,7 @@ namespace {
 struct Frequencies {
   double speed = 0;
   std::vector<double> w;
+  bool known = true;  ///< false: a table of frequencies ends below one of them
 };
 
 std::vector<Frequencies> frequencies_at(Linearizer& linear, const std::vector<double>& speeds,
@@ -29,13 +30,13 @@ std::vector<Frequencies> frequencies_at(Linearizer& linear, const std::vector<do
   WhirlSolver solver(linear, o);
   std::vector<Frequencies> out;
   for (const double Omega : speeds) {
-    Frequencies f{Omega, {}};
+    Frequencies f{Omega, {}, true};
     try {
       for (const WhirlMode& m : solver.solve(sense * Omega))
         f.w.push_back(m.frequency);
     } catch (const Error& e) {
-      // a table of frequencies ends below one of them: none is known here
       if (e.diagnostics().front().code != "E81") throw;
+      f.known = false;
     }
     out.push_back(std::move(f));
   }
@@ -62,7 +63,7 @@ std::optional<std::vector<Resonance>> RotatingAxes::resonances(const std::vector
   if (speeds.size() < 2 || !(speeds.back() > speeds.front())) return out;
   Linearizer linear(linear_);
   const std::vector<Frequencies> known = frequencies_at(linear, with_more(speeds), sense);
-  if (std::any_of(known.begin(), known.end(), [](const Frequencies& f) { return f.w.empty(); }))
+  if (std::any_of(known.begin(), known.end(), [](const Frequencies& f) { return !f.known; }))
     return std::nullopt;
   const double ratio = std::abs(ratio_);
   const auto look = [&](const Frequencies& a, const Frequencies& b, std::size_t i, std::size_t j,

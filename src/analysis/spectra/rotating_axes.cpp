@@ -151,20 +151,24 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Harmonics harmonics
   const la::MCK fixed = raw_;
   const Coupling coupling(first, motion_.active());
   frequencies_ = coupling.frequencies();
-  double joined = 0, half = 0;
+  double varies = 0, half = 0, joined = 0, joined_by_half = 0;
   for (const double theta : {0.7, 1.9, 2.6}) {
     sample(Omega, theta, {});
     joined = std::max(joined, coupling.rate(turned_, first));
+    varies = std::max({varies, difference(first.M, turned_.M), difference(first.K, turned_.K)});
     turning_ =
         turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
     const la::MCK here = turned_;
     sample(Omega, theta + pi, {});
-    half = std::max(half, coupling.rate(turned_, here));
+    half = std::max({half, difference(here.M, turned_.M), difference(here.K, turned_.K)});
+    joined_by_half = std::max(joined_by_half, coupling.rate(turned_, here));
   }
-  const double nothing = negligible * std::abs(speed(Omega));
-  harmonics_ = joined > nothing ? harmonics.least : 0;
+  harmonics_ = varies > steady ? harmonics.least : 0;
   // the sag of a shaft has the period of a revolution, but joins next to nothing
-  step_ = half > nothing ? 1 : 2;
+  constexpr double sag = 1e-3;
+  const bool joins_little =
+      !frequencies_.empty() && half < sag && joined_by_half <= negligible * std::abs(speed(Omega));
+  step_ = half > steady && !joins_little ? 1 : 2;
   // A harmonic left out is joined to the constant part by those before it.
   const double slowest = std::isnan(harmonics.slowest) ? Omega : harmonics.slowest;
   const double share = joined / std::max(std::abs(speed(slowest)), 1e-300);
@@ -468,18 +472,20 @@ double RotatingAxes::last_share(const VecXc& x) const {
   return all > 0 ? std::sqrt(last / all) : 0.0;
 }
 
-void RotatingAxes::note_size(const VecX& x, Index parts) {
+RotatingAxes::SteadySize RotatingAxes::size_of(const VecX& x, Index parts) const {
   // of those a single one apart every other may be nothing
   const Index some = step_ == 1 ? 4 : 2;
   const Index last = constant() ? 0 : std::min<Index>(some, (parts - 2) / 2 * 2);
+  SteadySize out;
   for (Index i = 0; i < linear_.system().nodes(); ++i) {
     if (linear_.system().node(i).scalar) continue;
     for (Index a = 0; a < parts; ++a) {
       const double size = x.segment<3>(6 * (parts * i + a)).norm();
-      steady_size_ = std::max(steady_size_, size);
-      if (a + last >= parts) steady_last_ = std::max(steady_last_, size);
+      out.all = std::max(out.all, size);
+      if (a + last >= parts) out.last = std::max(out.last, size);
     }
   }
+  return out;
 }
 
 std::vector<VecXc> RotatingAxes::in_fixed_axes(const VecX& x, const std::vector<Index>& orders,
@@ -511,12 +517,11 @@ std::vector<VecXc> RotatingAxes::in_fixed_axes(const VecX& x, const std::vector<
   return out;
 }
 
-VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
+VecX RotatingAxes::solve_response(double Omega, const VecXc& forces) {
   WHIRL_EXPECTS(forces.size() == linear_.system().size());
   const la::MCK& m = at(Omega);
   // of exp(i theta) with the angle of the axes, which may run backwards
-  const bool backward = ratio_ < 0;
-  const VecXc f = backward ? VecXc(forces.conjugate()) : forces;
+  const VecXc f = ratio_ < 0 ? VecXc(forces.conjugate()) : forces;
   const system::System& s = linear_.system();
   const Index parts = 2 * harmonics_ + 1;
   VecX x = VecX::Zero(6 * pattern_->size());
@@ -537,17 +542,18 @@ VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
   if (other > std::max(1e-6 * size, nothing))
     throw run_error("E88", "forces once a revolution that do not turn with the asymmetric rotor",
                     "a transient step has no such limit");
-  steady_response_.resize(0);
   if (!direct_) direct_ = la::make_direct_solver<double>(*pattern_, active_);
-  if (direct_->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
-    return VecXc::Constant(f.size(), Complex(nan, nan));
+  if (direct_->factor(m, 0.0, 0.0, 1.0) != la::Status::ok) return {};
   direct_->solve(x);
-  steady_size_ = steady_last_ = 0.0;
-  note_size(x, parts);
-  response_size_ = steady_size_;
+  return x;
+}
+
+VecXc RotatingAxes::response(double Omega, const VecXc& forces) {
+  const VecX x = solve_response(Omega, forces);
+  if (x.size() == 0) return VecXc::Constant(forces.size(), Complex(nan, nan));
+  share_ = size_of(x, 2 * harmonics_ + 1).share(0.0);
   const VecXc a = in_fixed_axes(x, orders(), 1).back();
-  steady_response_ = std::move(x);
-  return backward ? VecXc(a.conjugate()) : a;
+  return ratio_ < 0 ? VecXc(a.conjugate()) : a;
 }
 
 VecX RotatingAxes::unbalanced(double Omega, const std::vector<Index>& orders) {
@@ -589,34 +595,42 @@ const la::MCK& RotatingAxes::at_odd(double Omega) {
   return odd_hill_;
 }
 
-std::vector<VecXc> RotatingAxes::multiples(double Omega, int count) {
-  WHIRL_EXPECTS(count >= 2);
-  const system::System& s = linear_.system();
-  const double W = speed(Omega);
+VecX RotatingAxes::solve_standing(double Omega) {
   const la::MCK& matrices = at_odd(Omega);
   VecX x = unbalanced(Omega, odd_);
   for (Index k = 0; k < x.size(); ++k)
     if (!odd_active_[idx(k)]) x[k] = 0.0;
-  std::vector<VecXc> out(idx(count + 1), VecXc::Zero(s.size()));
   if (!odd_direct_) odd_direct_ = la::make_direct_solver<double>(*odd_pattern_, odd_active_);
-  if (odd_direct_->factor(matrices, 0.0, 0.0, 1.0) != la::Status::ok) {
-    for (VecXc& a : out)
-      a.setConstant(Complex(nan, nan));
-    return out;
-  }
+  if (odd_direct_->factor(matrices, 0.0, 0.0, 1.0) != la::Status::ok) return {};
   odd_direct_->solve(x);
-  const Index parts = count_parts(odd_);
+  return x;
+}
+
+std::vector<VecXc> RotatingAxes::multiples(double Omega, const VecXc& forces, int count) {
+  WHIRL_EXPECTS(count >= 2);
+  const VecXc none = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
+  SteadySize turned;
+  std::vector<VecXc> of_response;
+  if (forces.size() > 0) {
+    const VecX x = solve_response(Omega, forces);
+    if (x.size() > 0) {
+      turned = size_of(x, 2 * harmonics_ + 1);
+      of_response = in_fixed_axes(x, orders(), count);
+    } else
+      of_response.assign(idx(count + 1), none);
+  }
+  const VecX x = solve_standing(Omega);
+  if (x.size() == 0) return std::vector<VecXc>(idx(count + 1), none);
   constexpr double nothing = 1e-6;  // beside the response: rounding, of a rotor without weight
-  steady_size_ = nothing * response_size_;
-  steady_last_ = 0.0;
-  note_size(x, parts);
-  out = in_fixed_axes(x, odd_, count);
-  if (step_ == 2 && steady_response_.size() > 0) {
-    const std::vector<VecXc> of_response = in_fixed_axes(steady_response_, orders(), count);
-    for (std::size_t h = 0; h < out.size(); ++h)
+  share_ = std::max(turned.share(0.0), size_of(x, count_parts(odd_)).share(nothing * turned.all));
+  std::vector<VecXc> out = in_fixed_axes(x, odd_, count);
+  for (std::size_t h = 0; h < of_response.size(); ++h) {
+    if (h == 1)
+      out[h] = of_response[h];
+    else if (step_ == 2)  // else among what is unbalanced there
       out[h] += of_response[h];
   }
-  if (W < 0)
+  if (speed(Omega) < 0)
     for (VecXc& a : out)
       a = a.conjugate().eval();
   return out;

@@ -19,6 +19,7 @@
 #include <analysis/linearizer.hpp>
 #include <analysis/spectra/harmonic_balance.hpp>
 #include <la/direct.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -92,7 +93,7 @@ class RotatingAxes {
   double last_share(const VecXc& x) const;
   /// Of the steady motion last solved for (response() or multiples()): how large its last harmonics are,
   /// over the largest displacement.
-  double last_share() const { return steady_size_ > 0 ? steady_last_ / steady_size_ : 0.0; }
+  double last_share() const { return share_; }
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
   VecXc constant_part(const VecXc& x) const;
   /// Symmetric part of the mean K~ (negative eigenvalues: what the rotation has made unstable if
@@ -107,20 +108,30 @@ class RotatingAxes {
   /// @throws Error (E88): the forces do not turn with the rotor.
   VecXc response(double Omega, const VecXc& f);
 
-  /// Steady motion besides that under what turns: of weight and other forces of fixed direction, which
-  /// meet another stiffness or inertia at every angle. Amplitudes a_h of Re(a_h exp(i h w t)),
-  /// w = |speed(Omega)|, h = 0 .. count, about the equilibrium of the mean; a_0 real; a_1 means nothing
-  /// (response()). What the forces of the response() before, at this speed, do at other multiples than once a
-  /// revolution is in it. Lateral; NaN as response(). On isotropic supports the mean and twice the speed are
-  /// all: the weight turns backwards in the axes.
+  /// Steady motion under f (response()) and of weight and other forces of fixed direction, which meet
+  /// another stiffness or inertia at every angle. Amplitudes a_h of Re(a_h exp(i h w t)),
+  /// w = |speed(Omega)|, h = 0 .. count, about the equilibrium of the mean; a_0 real; a_1 that of f alone.
+  /// Lateral; NaN as response(). On isotropic supports the mean and twice the speed are all: the weight turns
+  /// backwards in the axes. On unequal ones f makes odd multiples; without f (empty) the even ones are right.
   /// @pre count >= 2.
-  std::vector<VecXc> multiples(double Omega, int count);
+  std::vector<VecXc> multiples(double Omega, const VecXc& forces, int count);
 
  private:
   /// M, C and K of a block less those at the first angle, each as (36), as waves of the angle.
   using Changes = Eigen::Matrix<double, 108, Eigen::Dynamic>;
-  /// Takes a steady motion into account of last_share().
-  void note_size(const VecX& x, Index parts);
+  /// Largest displacement of a steady motion in parts, m, and of its last harmonics.
+  struct SteadySize {
+    double all = 0, last = 0;
+    double share(double floor) const {
+      const double size = std::max(all, floor);
+      return size > 0 ? last / size : 0.0;
+    }
+  };
+  SteadySize size_of(const VecX& x, Index parts) const;
+  /// Parts of the motion under forces that turn, and under those of fixed direction; empty at the edge of a
+  /// band.
+  VecX solve_response(double Omega, const VecXc& forces);
+  VecX solve_standing(double Omega);
   /// Of the lines whose matrices turn with them; where none do, of the first that turns.
   void find_ratio(double Omega);
   /// Of the motion and of what turns with the rotor; 0: the constant part.
@@ -156,8 +167,7 @@ class RotatingAxes {
   double ratio_ = 1.0;  ///< speed of the axes over the reference's
   Index harmonics_ = 0, step_ = 2;
   std::vector<double> frequencies_;  ///< rad/s, of some motions of the constant matrices
-  VecX steady_response_;             ///< of response(), in parts
-  double steady_size_ = 0, steady_last_ = 0, response_size_ = 0;  ///< m
+  double share_ = 0;                 ///< last_share()
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
