@@ -73,7 +73,7 @@ Ticks linear_ticks(double lo, double hi, double target) {
 
 Ticks log_ticks(double lo, double hi, double target) {
   Ticks t;
-  if (!(lo > 0) || !(hi > lo)) return t;
+  if (!(lo > 0) || !(hi > lo) || !std::isfinite(hi)) return t;
   const int first = static_cast<int>(std::floor(std::log10(lo) + 1e-9)),
             last = static_cast<int>(std::ceil(std::log10(hi) - 1e-9));
   const double decades = std::log10(hi / lo);

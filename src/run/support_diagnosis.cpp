@@ -19,9 +19,7 @@ using assembly::SupportCondition;
 /// The conditions of the supports at a state; node states as evaluated there.
 class Conditions {
  public:
-  Conditions(const Job& job, const system::State& s)
-      : job_(job),
-        workspace_(job.system().make_workspace()) {
+  Conditions(const Job& job, const system::State& s) : workspace_(job.system().make_workspace()) {
     job.system().evaluate_nodes(workspace_, s.frames, s.t, s.q, s.v, s.a);
   }
   SupportCondition::State of(const SupportCondition& c) const { return c.state(node()); }
@@ -34,7 +32,6 @@ class Conditions {
   assembly::NodeAt node() const {
     return [this](Index n) -> const system::NodeState& { return workspace_.in_own_axes(n); };
   }
-  const Job& job_;
   system::Workspace workspace_;
 };
 

@@ -17,7 +17,11 @@ void finish(const Sums& w, const Vectors& x) {
   double *const q = x.q, *const v = x.v, *const a = x.a, *const q_low = x.q_low,
                 *const v_low = x.v_low, *const last = x.last_increment, *const stiff = x.stiff,
                 *const inertia = x.inertia, *const filter = x.filter;
+#if defined(__clang__)
+#pragma clang loop vectorize(assume_safety)
+#else
 #pragma GCC ivdep
+#endif
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const double u = real[i], re = complex[2 * i], im = complex[2 * i + 1], free = h * v0[i];
     const auto sum = [&](const Weights& k) { return k.real * u + k.re * re + k.im * im; };

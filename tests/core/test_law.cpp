@@ -155,7 +155,9 @@ TEST(Law, PacesMissNothing) {
         Case{"piecewise", make_piecewise({0, 0.3}, {make_constant(1), make_harmonic(0, 3, 40, 0)})},
         Case{"angle", make_angle_of_speed(make_smooth_step(0.2, 1.7, 1, -4), 0.7)}}) {
     const bool angle = std::string_view(name) == "angle";
-    const auto value = [&](double t) { return angle ? law->at(t).df : law->at(t).f; };
+    const auto value = [angle, &law = law](double t) {
+      return angle ? law->at(t).df : law->at(t).f;
+    };
     double low = infinity, high = -infinity;
     for (double t = 0.0; t < 2.0; t += 1e-4) {
       low = std::min(low, value(t));

@@ -105,6 +105,7 @@ TEST(Ticks, DecadesAndTheirFractions) {
   EXPECT_LE(a.major.size(), 6u);
   for (const double v : a.major)
     EXPECT_NEAR(std::log10(v), std::round(std::log10(v)), 1e-9);
+  EXPECT_TRUE(plot::log_ticks(1, infinity, 6).major.empty());
   EXPECT_EQ(plot::log_ticks(1, 100, 6).labels,
             (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
 }
@@ -135,8 +136,9 @@ TEST(Polar, EveryCurveHasItsSpeeds) {
   const auto& notes = f.axes.front().notes;
   EXPECT_LE(notes.size(), 12u);
   for (const auto& [from, to] : {std::pair{0.0, 180.0}, {180.0, 360.0}})
-    EXPECT_GE(std::count_if(notes.begin(), notes.end(),
-                            [&](const plot::Note& n) { return n.x >= from && n.x <= to; }),
+    EXPECT_GE(std::count_if(
+                  notes.begin(), notes.end(),
+                  [from = from, to = to](const plot::Note& n) { return n.x >= from && n.x <= to; }),
               2)
         << from;
 }

@@ -86,7 +86,7 @@ model::Model machine_of_two() {
                     section("given", 0.1, 0, 0)};
   rotor.sections[0].od_r = 0.04;
   rotor.sections[0].id_r = 0.03;
-  model::Section::Constants& k = rotor.sections[2].constants.emplace();
+  model::Section::Constants& k = rotor.sections[2].constants.emplace(model::Section::Constants{});
   const double r = 0.03, A = pi * r * r, I = pi * r * r * r * r / 4;
   k = {200e9 * A, 80e9 * A, 160e9 * I, 200e9 * I, 8000 * A, 8000 * I, 16000 * I};
   casing.name = "casing";

@@ -35,7 +35,7 @@ TEST(RigidMotion, SymmetricTopNutation) {
   const RigidCase c = symmetric_top();
   const double period = 0.06370064452338624;  // elliptic integrals
   for (auto& [name, m] : both_forms(c.system, c.start)) {
-    const auto look = [&](double& theta, double& azimuth) {
+    const auto look = [&c, &m = m](double& theta, double& azimuth) {
       const Vec3 d = attitude(c.system, m->state(), 0).col(0);
       theta = std::atan2(std::hypot(d.x(), d.y()), d.z());
       azimuth = std::atan2(d.y(), d.x());
@@ -67,7 +67,7 @@ TEST(RigidMotion, FreeAsymmetricTopTurnsOver) {
   for (const Case& k : cases) {
     const RigidCase c = free_top(k.eps);
     for (auto& [name, m] : both_forms(c.system, c.start)) {
-      const auto body_rate = [&] {
+      const auto body_rate = [&c, &m = m] {
         const State& x = m->state();
         return Vec3(attitude(c.system, x, 0).transpose() * angular_velocity(c.system, x, 0));
       };
