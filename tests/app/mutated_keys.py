@@ -7,6 +7,7 @@
     mutated_keys.py WHIRL EXAMPLES --only TEXT     of the sample or the whole: decks with TEXT in their path
     mutated_keys.py WHIRL EXAMPLES --seconds N     no mutant begins later: for a program that sanitizers slow down
                                                    (with WHIRL_NO_MEMORY_LIMIT=1); runs have 10 s instead of 20
+    ... --set KEY=VALUE                            for every run
 
 A fault is a crash, exit code 1, an error without a code or without anything said, a run that does not stop within
 seconds of Ctrl-C, more memory than 4 GB, and numbers in a table that are none though nothing says what that means. Each
@@ -110,15 +111,15 @@ def not_finite(results):
     return found[0] if found else ""
 
 
-def try_one(whirl, deck, what, text, run):
+def try_one(whirl, also, deck, what, text, run):
     with tempfile.TemporaryDirectory(prefix="whirl_mutant_") as folder:
         work = Path(folder) / deck.parent.name
         shutil.copytree(deck.parent, work, ignore=shutil.ignore_patterns("results*", "*.svg", "*.png"))
         (work / "deck.toml").write_text(text)
-        bad, taken = trouble([whirl, "check", "deck.toml"], work)
+        bad, taken = trouble([whirl, "check", "deck.toml", *also], work)
         if not bad and taken and run:
             out = Path(folder) / "out"
-            bad, _ = trouble([whirl, "run", "deck.toml", "--quiet", "--jobs", "1", "--output", str(out)], work)
+            bad, _ = trouble([whirl, "run", "deck.toml", "--quiet", "--jobs", "1", "--output", str(out), *also], work)
             bad = bad or not_finite(out)
         if what == "as it stands" and not taken:
             bad = "refused"
@@ -132,6 +133,7 @@ def main():
     parser.add_argument("--whole", nargs="?", const=30, type=int)
     parser.add_argument("--only", default="")
     parser.add_argument("--seconds", type=float)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     a = parser.parse_args()
     decks = [d for d in sorted(a.examples.glob("*/deck.toml")) if a.only in str(d)]
     if not decks:
@@ -152,6 +154,7 @@ def main():
     # as it stands each deck has to be taken, or nothing is tested
     work += [(deck, "as it stands", deck.read_text(), False) for deck in decks]
     whirl = str(Path(a.whirl).resolve())
+    also = [part for value in a.set for part in ("--set", value)]
     if a.seconds is not None:   # the same order each time, all decks and runs mixed
         work.sort(key=lambda w: zlib.crc32(f"{w[0].parent.name} {w[1]}".encode()))
         global SECONDS
@@ -159,7 +162,7 @@ def main():
     end = time.monotonic() + (a.seconds or float("inf"))
 
     def in_time(w):
-        return try_one(whirl, *w) if time.monotonic() < end else None
+        return try_one(whirl, also, *w) if time.monotonic() < end else None
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(in_time, work))

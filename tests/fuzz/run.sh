@@ -3,17 +3,17 @@
 # there are processors, under the address and undefined-behaviour sanitizers. Needs clang.
 #   run.sh SOURCE [SECONDS [TARGET ...]]      60 s each
 # Always the same inputs in the same order, further the more seconds there are (WHIRL_FUZZ_SEED: others), as long as nothing stands in
-# build/fuzz/corpus. Seeds: the decks, tables and checkpoints of examples and tests, and seeds/. What is found stays in build/fuzz/found.
+# build/asan/corpus. Seeds: the decks, tables and checkpoints of examples and tests, and seeds/. What is found stays in build/asan/found.
 set -euo pipefail
 cd "$1"
 seconds=${2:-60}
 shift $(($# > 2 ? 2 : $#))
 [ $# -gt 0 ] || set -- deck units tables foundations checkpoints converter
 
-cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --target "${@/#/fuzz_}"
+cmake --preset asan -DWHIRL_BUILD_TESTS=ON >/dev/null
+cmake --build --preset asan --target "${@/#/fuzz_}"
 
-export build=$PWD/build/fuzz here=$PWD/tests/fuzz seconds
+export build=$PWD/build/asan here=$PWD/tests/fuzz seconds
 mkdir -p "$build/found" "$build"/corpus/{deck,units,tables,foundations,checkpoints,converter} "$build/seeds"/{deck,checkpoints}
 export ASAN_OPTIONS=detect_stack_use_after_return=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1
 for deck in examples/*/deck.toml tests/deck/good/*.toml tests/deck/bad/*.toml; do
@@ -43,7 +43,7 @@ fuzz() {
   if ! "$build/bin/fuzz_$1" -max_total_time="$seconds" -seed="${WHIRL_FUZZ_SEED:-1}" -timeout=20 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
     -artifact_prefix="$build/found/$1_" "$build/corpus/$1" "${seeds[@]}" >"$log" 2>&1; then
     tail -n 60 "$log"
-    echo "fuzz_$1 found something: build/fuzz/found/$1_*"
+    echo "fuzz_$1 found something: build/asan/found/$1_*"
     return 1
   fi
   echo "fuzz_$1: $(sed -n 's/^stat::number_of_executed_units: */inputs /p' "$log"), nothing found"
