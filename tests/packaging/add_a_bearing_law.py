@@ -2,7 +2,7 @@
 
 usage: add_a_bearing_law.py REPOSITORY BUILD SCRATCH
 
-Applies the blocks of the page to a copy of the sources in SCRATCH, configures it with the compiler of BUILD, shows for every registration that the sources without it do not
+Applies the blocks of the page to a copy of the sources in SCRATCH, configures it with clang or the compiler of BUILD, shows for every registration that the sources without it do not
 compile, builds the program (what knows no law is linked from BUILD) and the tests of the law, runs them, and the deck of the page with its numbers against the closed form. Standard library only.
 """
 import csv
@@ -59,6 +59,11 @@ def cached(build, *names):
     return [f"-D{name}={value}" for name, value in re.findall(r"^(\w+):\w+=(.+)$", text, re.M) if name in names]
 
 
+def quickest_compiler(build):
+    """clang, which takes half the time without optimisation and links with what GCC built; or that of BUILD."""
+    return shutil.which("clang++") or cached(build, "CMAKE_CXX_COMPILER")[0].partition("=")[2]
+
+
 def run(*command, **options):
     print("+", shlex.join(map(str, command)), flush=True)
     subprocess.run(command, check=True, **options)
@@ -76,8 +81,9 @@ def compiles(build, source):
     """Whether a source file of the copy passes the compiler; what it says otherwise."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
         if entry["file"].endswith("/" + source):
-            include = f" -I{build.parents[1] / 'cmake'} -fsyntax-only"  # the precompiled header is not there yet
-            done = subprocess.run(entry["command"] + include, shell=True, cwd=entry["directory"], capture_output=True, text=True)
+            command = re.sub(r"-Xclang -include-pch -Xclang \S+", "", entry["command"])  # the precompiled header is not there yet
+            command += f" -I{build.parents[1] / 'cmake'} -fsyntax-only"
+            done = subprocess.run(command, shell=True, cwd=entry["directory"], capture_output=True, text=True)
             return done.returncode == 0, done.stderr
     raise SystemExit(f"{source} is not compiled")
 
@@ -104,7 +110,7 @@ def show_omissions(tree, build, page):
         ok, said = compiles(build, source)
         for file, text in saved.items():
             (tree / file).write_text(text)
-        assert not ok and (LAW in said or "SupportTraits" in said), f"without {what} {source} compiles"
+        assert not ok and any(name in said for name in (LAW, "SupportTraits", "field 'gap'")), f"without {what} {source} compiles"
         print(f"without {what}: {source} does not compile", flush=True)
 
 
@@ -140,7 +146,7 @@ def main():
     # without optimisation: what is built here is run once. Each file by itself until it is seen which of them does not compile.
     run_quietly("cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DWHIRL_BUILD_TESTS=ON", "-DWHIRL_WITH_VTK=OFF", "-DWHIRL_UNITY=0",
         "-DCMAKE_BUILD_TYPE=Plain", "-DCMAKE_CXX_FLAGS_PLAIN=-O0 -DNDEBUG", f"-DWHIRL_BUILT={parent}", f"-DWHIRL_TAKEN={';'.join(TAKEN)}",
-        *cached(parent, "CMAKE_CXX_COMPILER", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_FLAGS", "WHIRL_WITH_SUNDIALS"))
+        f"-DCMAKE_CXX_COMPILER={quickest_compiler(parent)}", *cached(parent, "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_FLAGS", "WHIRL_WITH_SUNDIALS"))
     show_omissions(tree, build, page)
     run_quietly("cmake", build, "-DWHIRL_UNITY=64")
     run_quietly("cmake", "--build", build, "--target", "test_elements", "test_model", "whirl")
