@@ -13,6 +13,9 @@ namespace {
 /// place to place go through the whole space each: up to this dimension one dense solution costs less.
 constexpr Index dense_recovery = 1200;
 constexpr Index few_missing = 8;
+/// Beyond this dimension one run over the whole region costs less than a dense solution or a search
+/// for each, as long as it is for few of its roots (the filters of control loops).
+constexpr Index quick_dense = 250, unknowns_per_root = 10, one_by_one = 2;
 
 }  // namespace
 
@@ -115,6 +118,11 @@ bool ModeSolver::Impl::look_everywhere(const CountRegion& region) {
       if (distance > within_crowd * region.radius) any = look_near(place, distance) || any;
     }
   return any;
+}
+
+bool ModeSolver::Impl::look_over(const CountRegion& region) {
+  const Complex middle(-0.5 * region.reach, 0.0);
+  return look_near(middle, std::hypot(region.radius, 0.5 * region.reach));
 }
 
 Index ModeSolver::Impl::count_oscillating() const {
@@ -345,6 +353,7 @@ void ModeSolver::Impl::certify() {
   double radius = count_radius();
   constexpr int rounds = 10;
   constexpr double less_reach = 0.7;
+  bool runs_help = true;
   for (int round = 0; round < rounds; ++round) {
     drop_unproved();
     count_double_zeros();
@@ -376,7 +385,10 @@ void ModeSolver::Impl::certify() {
       certificate.missing = 0;
       break;
     }
-    any = c.unknown > few_missing && dimension() <= dense_recovery && solve_dense(&region);
+    const bool few_of_all = dimension() > std::max(quick_dense, unknowns_per_root * c.unknown);
+    if (runs_help && c.unknown > one_by_one && few_of_all) any = runs_help = look_over(region);
+    if (!any && c.unknown > few_missing && dimension() <= dense_recovery)
+      any = solve_dense(&region);
     if (!any)
       for (const Complex place : certificate.where)
         any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;

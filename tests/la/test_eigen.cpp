@@ -732,6 +732,55 @@ TEST(QuadraticModes, ACrowdNobodyAskedForIsNotLookedFor) {
   }
 }
 
+// Filters of four control loops that are alike, beside the few slow modes asked for: what decays in the
+// region that is counted comes out of one search over it. It took a dense solution of all unknowns.
+TEST(QuadraticModes, FiltersOfControlLoopsAreFoundTogether) {
+  Shaft s;
+  s.elements = 60;
+  constexpr Index loops = 4;
+  const Index nodes = s.elements + 1;
+  Pairs pairs = chain(nodes);
+  for (Index k = 0; k < loops; ++k)
+    pairs.emplace_back(12 * (k + 1), nodes + k);
+  const BlockPattern p(nodes + loops, pairs);
+  MCK m = shaft_matrices(p, s, 0.0);
+  const std::array<double, 6> rates{40.0, 300.0, 900.0, 1500.0, 2500.0, 4000.0};
+  for (Index k = 0; k < loops; ++k) {
+    const Index loop = p.diagonal(nodes + k);
+    for (int f = 0; f < 6; ++f) {
+      m.C.block(loop)(f, f) = 1.0;
+      m.K.block(loop)(f, f) = rates[at(f)];
+    }
+    // each reads a displacement, and nothing follows it
+    m.K.block(p.slot(nodes + k, 12 * (k + 1)))(0, 1) = -1.0;
+  }
+  const BlockPattern bare(nodes, chain(nodes));
+  const Mask held = pinned(bare, true);
+  Mask active = held;
+  active.insert(active.end(), 6 * loops, 1);
+  ModeOptions o;
+  o.count = 0;
+  o.max_frequency = 2000.0;
+  o.certify = true;
+  const std::vector<Mode> expected = quadratic_modes(shaft_matrices(bare, s, 0.0), held, o);
+  o.real_roots = true;
+  ModeSolver solver(p, active, o);
+  std::vector<double> found;
+  std::array<int, 6> copies{};
+  for (const Mode& mode : solver.solve(m)) {
+    if (mode.lambda.imag() > 0.0) found.push_back(mode.lambda.imag());
+    for (std::size_t f = 0; f < rates.size(); ++f)
+      copies[f] += std::abs(mode.lambda + rates[f]) < 1e-8 * rates[f];
+  }
+  EXPECT_TRUE(solver.certificate().complete());
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    EXPECT_NEAR(found[k], expected[k].lambda.imag(), 1e-8 * found[k]);
+  for (std::size_t f = 0; f < rates.size(); ++f)
+    EXPECT_EQ(copies[f], loops) << rates[f];
+  EXPECT_LT(solver.work().operator_products, 6 * p.size());  // which a dense solution takes
+}
+
 // Damping by the stiffness, C = beta K: nothing oscillates faster than 1/beta, and all that is faster
 // crowds about -1/beta. More modes asked for than there are: the list ends, as far as it is certified.
 TEST(QuadraticModes, ACrowdOfDecayingRootsEndsAList) {
