@@ -102,13 +102,19 @@ TEST_P(KeepEverything, GivesTheSame) {
     m.output.binary = false;
     m.output.csv = true;
     m.output.vtk.clear();
-    for (model::Step& s : m.steps)
+    for (model::Step& s : m.steps) {
+      // what is left out is the same at all speeds
+      if (auto* t = std::get_if<model::StabilityStep>(&s.law); t && t->speed.values.empty()) {
+        t->speed.stop = t->speed.start + (t->speed.stop - t->speed.start) / 4.0;
+        t->speed.points = std::max(3, t->speed.points / 4);
+      }
       if (auto* t = std::get_if<model::TransientStep>(&s.law)) {
         t->duration = std::min(t->duration, whirls ? still : longest);
         t->checkpoint = 0;
         m.output.every = std::max(m.output.every, t->duration / 500.0);  // equal rows in both runs
         tolerance = std::max(tolerance, t->integrator.tolerance);
       }
+    }
     run::RunOptions o;
     o.quiet = true;
     o.variant = [&](const std::string& setting) {
