@@ -353,7 +353,7 @@ void ModeSolver::Impl::certify() {
   double radius = count_radius();
   constexpr int rounds = 10;
   constexpr double less_reach = 0.7;
-  bool runs_help = true;
+  int runs = 3;  // what they leave has rounds enough
   for (int round = 0; round < rounds; ++round) {
     drop_unproved();
     count_double_zeros();
@@ -386,7 +386,10 @@ void ModeSolver::Impl::certify() {
       break;
     }
     const bool few_of_all = dimension() > std::max(quick_dense, unknowns_per_root * c.unknown);
-    if (runs_help && c.unknown > one_by_one && few_of_all) any = runs_help = look_over(region);
+    if (runs > 0 && c.unknown > one_by_one && few_of_all) {
+      any = look_over(region);
+      runs = any ? runs - 1 : 0;
+    }
     if (!any && c.unknown > few_missing && dimension() <= dense_recovery)
       any = solve_dense(&region);
     if (!any)

@@ -62,7 +62,7 @@ struct ModeSolver::Impl : Eigenpairs {
   /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic,
   /// with all that is known out of the way. True: something new.
   bool look_near(Complex place, double distance);
-  /// Looks for all roots of the region from its middle. True: something new.
+  /// Looks over the decaying half of the region from its middle, for many at once. True: something new.
   bool look_over(const CountRegion& region);
   /// Looks round a grid over the region, for roots that lie too close together for their moments to
   /// tell them apart.
