@@ -376,19 +376,18 @@ void ModeSolver::Impl::certify() {
     if (avoid_crowd(c, radius)) continue;
     certificate.where = places_of_missing(c.unknown, region);
     bool any = false;
-    if (further_copies(certificate.where)) {
-      constexpr Index few = 2;  // more are a crowd, which nobody looks at
-      if (c.unknown <= few)
-        for (const Complex place : certificate.where)
-          any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;
-      if (any) continue;
-      certificate.missing = 0;
-      break;
-    }
+    const bool copies = further_copies(certificate.where);
     const bool few_of_all = dimension() > std::max(quick_dense, unknowns_per_root * c.unknown);
-    if (runs > 0 && c.unknown > one_by_one && few_of_all) {
+    if (copies && c.unknown <= one_by_one) {
+      for (const Complex place : certificate.where)
+        any = look_near(place, short_of_crowd(place, 0.1 * (round + 1) * radius)) || any;
+    } else if (runs > 0 && c.unknown > one_by_one && few_of_all) {
       any = look_over(region);
       runs = any ? runs - 1 : 0;
+    }
+    if (copies && !any) {  // a crowd of them, which nobody looks at
+      certificate.missing = 0;
+      break;
     }
     if (!any && c.unknown > few_missing && dimension() <= dense_recovery)
       any = solve_dense(&region);
