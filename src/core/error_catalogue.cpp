@@ -624,6 +624,13 @@ const std::vector<CodeInfo>& error_catalogue() {
        "foundation, and with it of the rotor, is smaller than it would be. The masses at the "
        "support points are shaken.",
        ""},
+      {"W19", "a material unlike any",
+       "The modulus or the density of a material is no metal's, but would be one's in another "
+       "unit: "
+       "MPa for GPa, g/cm^3 for kg/m^3. It is computed as given. A shaft that is to have no mass "
+       "has "
+       "the density 0.",
+       "E = \"210 GPa\"\ndensity = \"7850 kg/m^3\""},
       {"W20", "left out or assumed in a conversion",
        "What another program's file says and a deck has no word for, or what a deck needs and the "
        "file does not say. The same list stands at the head of the deck.",

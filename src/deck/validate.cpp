@@ -108,6 +108,33 @@ void check_shaken_foundations(const model::Model& m, Problems& out) {
   }
 }
 
+/// Numbers of a material that are right in another unit only.
+void check_materials(const model::Model& m, Problems& out) {
+  constexpr double metal = 2000.0;      // kg/m3, and more
+  constexpr double slowest = 1000.0;    // m/s: sound in a rod of lead has 1200
+  constexpr double heaviest = 23000.0;  // kg/m3: osmium has 22590
+  constexpr double in_g_per_cm3[]{1.5, heaviest / 1000.0};
+  for (const model::Material& x : m.materials) {
+    const double sound = x.rho > 0 ? std::sqrt(x.E / x.rho) : infinity;
+    const auto warn = [&](std::string what, const char* hint) {
+      report(out, "W19", fmt::format("material '{}': {}", x.name, what), hint, x.where,
+             Diagnostic::Severity::warning);
+    };
+    if (x.rho > heaviest)
+      warn(fmt::format("a density of {:.6g} kg/m^3 is more than that of any metal", x.rho),
+           "steel has 7850 kg/m^3, or 0.284 lbm/in^3");
+    else if (x.rho > in_g_per_cm3[0] && x.rho < in_g_per_cm3[1])
+      warn(fmt::format("a density of {:.6g} kg/m^3 is that of a foam, or of a metal in g/cm^3",
+                       x.rho),
+           "steel has 7850 kg/m^3; a shaft without mass has density = \"0 kg/m^3\"");
+    else if (x.rho >= metal && sound < slowest)
+      warn(fmt::format("a modulus E of {:.6g} GPa beside a density of {:.6g} kg/m^3 is that of no "
+                       "metal",
+                       1e-9 * x.E, x.rho),
+           "steel has 210 GPa, or 30e6 psi");
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
   check_shaken_foundations(m, out);
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
@@ -173,6 +200,7 @@ void check_effects(const model::Model& m, Problems& out) {
 std::vector<WholeModelProblem> check_model(const model::Model& m) {
   Problems out;
   check_names(m, out);
+  check_materials(m, out);
   check_restraint(m, out);
   check_tables(m, out);
   check_linear(m, out);
