@@ -1,6 +1,7 @@
 // A deck run by the program as a user would, in a folder of its own that goes with the object.
 #pragma once
 #include "../io/read_json.hpp"
+#include "approved_runs.hpp"
 #include "figure_faults.hpp"
 
 #include <gtest/gtest.h>
@@ -134,6 +135,18 @@ struct DeckRun {
     // whatever a test looks at, its figures can be read
     for (const std::string& fault : figure_faults(folder / "r" / "plots"))
       ADD_FAILURE() << fault;
+    compare_with_approved(deck);
+  }
+  /// A number that no test looks at does not change unseen.
+  void compare_with_approved(const std::string& deck) const {
+    std::ostringstream text;
+    text << std::ifstream(folder / deck).rdbuf();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    for (const std::string& what : differences_from_approved(test->test_suite_name(), text.str(),
+                                                             exit, folder / "r", log))
+      ADD_FAILURE() << "not as approved: " << what
+                    << " (where it is meant, tests/approved/update_runs.py approves it)\n"
+                    << text.str();
   }
 };
 
