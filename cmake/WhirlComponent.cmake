@@ -197,6 +197,7 @@ function(whirl_tests NAME)
     if(A_TIMEOUT)
       set(timeout TIMEOUT ${A_TIMEOUT})   # seconds: a test that never ends fails
     endif()
+    set_property(GLOBAL PROPERTY WHIRL_LABEL_${NAME} ${A_LABEL})
     gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60 WORKING_DIRECTORY ${A_DIR}
                          PROPERTIES LABELS "${A_LABEL}" ${timeout} ${A_PROPERTIES})
   endif()

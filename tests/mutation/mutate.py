@@ -246,7 +246,8 @@ def list_tests(work):
         if "command" not in t or TESTS_LEFT_OUT.search(t["name"]):
             continue
         p = {x["name"]: x["value"] for x in t.get("properties", [])}
-        if {"long", "hours"} & set(p.get("LABELS", [])):
+        labels = set(p.get("LABELS", []))
+        if {"long", "hours"} & labels and "slow" not in labels:
             continue
         out[t["name"]] = {"command": t["command"], "folder": p.get("WORKING_DIRECTORY", str(work.build)),
                           "environment": dict(e.split("=", 1) for e in p.get("ENVIRONMENT", []))}
