@@ -32,6 +32,8 @@ class OutArchive {
     put(std::span<const double>(x.data(), static_cast<std::size_t>(x.size())));
   }
   const std::string& data() const { return data_; }
+  /// Room for so many bytes.
+  void reserve(std::size_t bytes) { data_.reserve(bytes); }
   /// The bytes; nothing is left.
   std::string take() { return std::move(data_); }
 

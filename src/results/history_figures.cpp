@@ -204,7 +204,7 @@ class HistoryFigures {
   const std::vector<Measurement>& all_;
   const std::vector<std::size_t>& start_;
   const PlotBuffer& buffer_;
-  const std::vector<std::vector<double>>& rows_;
+  const PlotBuffer::Rows rows_;
   const plot::Amplitude convention_;
   const double unresolved_, size_;     ///< size_: of the machine, m
   double largest_load_ = 0;            ///< N; moments as forces at the machine's size

@@ -67,7 +67,7 @@ plot::Series within_a_turn(const plot::Series& in) {
 
 /// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way
 /// round). While the speed is held it neither rises nor falls but for rounding: its end counts.
-std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
+std::size_t turning_row(const PlotBuffer::Rows& rows) {
   double most = 0;
   for (const auto& r : rows)
     most = std::max(most, std::abs(r[1]));
@@ -82,7 +82,7 @@ std::string length_text(double length) {
   return readable(unit.factor * length, 2) + " " + unit.name;
 }
 
-bool speed_changes(const std::vector<std::vector<double>>& rows) {
+bool speed_changes(const PlotBuffer::Rows& rows) {
   double low = rows[0][1], high = low;
   for (const auto& r : rows) {
     low = std::min(low, r[1]);
@@ -165,7 +165,7 @@ class KeyphasorReport {
   }
 
   const TrackedTurns& turns_;
-  const std::vector<std::vector<double>>& rows_;
+  const PlotBuffer::Rows rows_;
   TransientEnd& end_;
   io::ReportSection& section_;
 };

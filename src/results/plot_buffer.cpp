@@ -1,11 +1,27 @@
 #include <results/plot_buffer.hpp>
 
 #include <algorithm>
-#include <utility>
+#include <stdexcept>
 
 namespace whirl::results {
 
-void PlotBuffer::append(const std::vector<double>& row) {
+void PlotBuffer::append(std::span<const double> row) {
+  WHIRL_EXPECTS(row.size() == channels_ + 1);
+  if (data_.empty() && rows_ == std::min(capacity_, rows_capacity_)) fill_buckets();
+  if (!data_.empty()) widen(row);
+  if (rows_ % keep_stride_ == 0) keep(row);
+  ++rows_;
+}
+
+/// A bucket a row so far.
+void PlotBuffer::fill_buckets() {
+  data_.reserve(capacity_ * channels_);
+  for (const Rows::Row row : kept_rows())
+    for (std::size_t k = 0; k < channels_; ++k)
+      data_.push_back({row[k + 1], row[k + 1], row[0], row[0]});
+}
+
+void PlotBuffer::widen(std::span<const double> row) {
   if (filled_ == 0) {
     if (data_.size() == capacity_ * channels_) halve();
     for (std::size_t k = 0; k < channels_; ++k)
@@ -25,16 +41,17 @@ void PlotBuffer::append(const std::vector<double>& row) {
     }
   }
   if (++filled_ == stride_) filled_ = 0;
-  if (rows_ % keep_stride_ == 0) {
-    if (kept_.size() == rows_capacity_) {
-      for (std::size_t i = 1; i < rows_capacity_ / 2; ++i)
-        kept_[i] = std::move(kept_[2 * i]);
-      kept_.resize(rows_capacity_ / 2);
-      keep_stride_ *= 2;
-    }
-    if (rows_ % keep_stride_ == 0) kept_.push_back(row);
+}
+
+void PlotBuffer::keep(std::span<const double> row) {
+  const std::size_t width = channels_ + 1;
+  if (kept_.size() == rows_capacity_ * width) {
+    for (std::size_t i = 1; i < rows_capacity_ / 2; ++i)
+      std::copy_n(&kept_[2 * i * width], width, &kept_[i * width]);
+    kept_.resize(rows_capacity_ / 2 * width);
+    keep_stride_ *= 2;
   }
-  ++rows_;
+  if (rows_ % keep_stride_ == 0) kept_.insert(kept_.end(), row.begin(), row.end());
 }
 
 void PlotBuffer::halve() {
@@ -52,38 +69,39 @@ void PlotBuffer::halve() {
 }
 
 void PlotBuffer::save(OutArchive& out) const {
-  for (std::size_t n : {stride_, rows_, filled_, keep_stride_, data_.size(), kept_.size()})
+  for (std::size_t n : {stride_, rows_, filled_, keep_stride_})
     out.put_count(n);
-  for (const Extreme& e : data_) {
-    out.put(e.lo);
-    out.put(e.hi);
-    out.put(e.t_lo);
-    out.put(e.t_hi);
-  }
-  for (const auto& row : kept_)
-    out.put(row);
+  std::vector<double> extremes;
+  extremes.reserve(4 * data_.size());
+  for (const Extreme& e : data_)
+    extremes.insert(extremes.end(), {e.lo, e.hi, e.t_lo, e.t_hi});
+  out.put(extremes);
+  out.put(kept_);
 }
 
 void PlotBuffer::restore(InArchive& in) {
-  std::size_t data = 0, kept = 0;
-  for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_, &data, &kept})
+  for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_})
     *n = in.count();
-  if (data > capacity_ * channels_ || kept > rows_capacity_)
+  const std::vector<double> extremes = in.numbers();
+  kept_ = in.numbers();
+  const std::size_t width = channels_ + 1;
+  if (extremes.size() % 4 != 0 || extremes.size() > 4 * capacity_ * channels_ ||
+      kept_.size() % width != 0 || kept_.size() > rows_capacity_ * width)
     throw std::invalid_argument("plot buffer of another run");
-  data_.resize(data);
-  kept_.resize(kept);
-  for (Extreme& e : data_) {
-    e.lo = in.number();
-    e.hi = in.number();
-    e.t_lo = in.number();
-    e.t_hi = in.number();
-  }
-  for (auto& row : kept_)
-    row = in.numbers();
+  data_.clear();
+  for (std::size_t i = 0; i < extremes.size(); i += 4)
+    data_.push_back({extremes[i], extremes[i + 1], extremes[i + 2], extremes[i + 3]});
 }
 
 PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
   Points p;
+  if (data_.empty()) {
+    for (const Rows::Row row : kept_rows()) {
+      p.t.push_back(row[0]);
+      p.y.push_back(row[k + 1]);
+    }
+    return p;
+  }
   const std::size_t n = channels_ ? data_.size() / channels_ : 0;
   for (std::size_t b = 0; b < n; ++b) {
     const Extreme& x = data_[b * channels_ + k];
@@ -104,15 +122,27 @@ PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
 std::vector<double> PlotBuffer::values_at(std::size_t k, const std::vector<double>& times) const {
   std::vector<double> out;
   out.reserve(times.size());
+  const Rows kept = kept_rows();
   for (const double t : times) {
-    const auto after = std::upper_bound(kept_.begin(), kept_.end(), t,
-                                        [](double x, const auto& row) { return x < row[0]; });
-    if (after == kept_.begin() || kept_.size() < 2) {
-      out.push_back(kept_.empty() ? 0.0 : kept_.front()[k + 1]);
+    if (kept.size() < 2) {
+      out.push_back(kept.empty() ? 0.0 : kept[0][k + 1]);
       continue;
     }
-    const auto right = after == kept_.end() ? after - 1 : after;
-    const std::vector<double>&a = *(right - 1), &b = *right;
+    std::size_t low = 0, high = kept.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (t < kept[middle][0])
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    const std::size_t after = low;  // the first row beyond the time
+    if (after == 0) {
+      out.push_back(kept[0][k + 1]);
+      continue;
+    }
+    const std::size_t right = after == kept.size() ? after - 1 : after;
+    const Rows::Row a = kept[right - 1], b = kept[right];
     const double span = b[0] - a[0], x = span > 0 ? (t - a[0]) / span : 0.0;
     out.push_back(a[k + 1] + x * (b[k + 1] - a[k + 1]));
   }

@@ -72,6 +72,10 @@ Part part_of(std::string_view name) {
 
 std::string encode(const Checkpoint& c) {
   OutArchive a(magic);
+  std::size_t bytes = 0;
+  for (const auto& [key, data] : c.parts)
+    bytes += key.content.size() + data.size();
+  a.reserve(2 * bytes);  // the parts are nearly all of it; what is not touched costs nothing
   a.put(c.deck);
   a.put(c.t_begin);
   a.put(c.speed);
