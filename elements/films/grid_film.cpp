@@ -131,7 +131,26 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
       open_.push_back(open);
     }
   }
+  mark_steps();
   add_rows(elements, widths);
+}
+
+void GridPad::mark_steps() {
+  stepped_.assign(open_.size(), 0);
+  // depths at two Gauss points of a half, carried on to its end
+  const auto beyond = [](double inner, double outer) {
+    return outer + (outer - inner) * 0.5 * (std::sqrt(3.0) - 1.0);
+  };
+  const auto depth_at = [&](std::size_t n, bool end) {
+    if (open_[n]) return 0.0;
+    const std::array<double, 4>& d = depth_[n];
+    return end ? beyond(d[2], d[3]) : beyond(d[1], d[0]);
+  };
+  for (std::size_t n = bands_; n < open_.size(); ++n) {
+    const double before = depth_at(n - bands_, true), behind = depth_at(n, false);
+    if (std::abs(before - behind) <= 1e-9 * std::max(before, behind)) continue;
+    stepped_[n - bands_] = stepped_[n] = 1;
+  }
 }
 
 /// Quadratic elements: a parabola is exact, and what is conducted from node to node is symmetric.
@@ -144,6 +163,8 @@ void GridPad::add_rows(const std::vector<double>& elements, const std::vector<do
       ++band;
     band_shares_[band] += width;
     const std::size_t nodes[3] = {2 * e, 2 * e + 1, 2 * e + 2};
+    rows_[nodes[0]].profile = 1.0 - elements[e] * elements[e];
+    rows_[nodes[1]].profile = 1.0 - middle * middle;
     const double shares[3] = {width / 6.0, 4.0 * width / 6.0, width / 6.0};
     for (std::size_t k = 0; k < 3; ++k)  // the side itself has no pressure
       if (nodes[k] < rows_.size())
@@ -232,6 +253,19 @@ void GridPad::Solver::number_columns() {
     place_[i] = !pad_.round_ ? i : 2 * i < n_ ? 2 * i : 2 * (n_ - 1 - i) + 1;
 }
 
+/// Conductance of a whole cell along the arc, 1/int 1/(a h^3), with its slopes.
+double GridPad::Solver::own(std::size_t i, std::size_t j, Vec3* slope) const {
+  double sum = 0.0;
+  for (const Piece& x : pieces(j)) {
+    const Half &a = half_cells_[2 * i * bands_ + x.band],
+               &b = half_cells_[(2 * i + 1) * bands_ + x.band];
+    const double r = a.r + b.r;
+    sum += x.share / r;
+    if (slope != nullptr) *slope -= x.share / (r * r) * (a.dr + b.dr);
+  }
+  return sum;
+}
+
 void GridPad::Solver::add_conductances() {
   for (std::size_t f = 0; f < faces(); ++f) {
     std::array<double, most_bands> own;
@@ -244,12 +278,16 @@ void GridPad::Solver::add_conductances() {
       along_[f * m_ + j] = sum;
     }
   }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j)
+      own_[at(i, j)] = own(i, j);
 }
 
 void GridPad::Solver::add_sources() {
   for (auto& B : B_)
     std::fill_n(B.begin(), size_, 0.0);
   std::fill_n(open_.begin(), size_, static_cast<unsigned char>(0));
+  std::fill_n(stepped_.begin(), size_, static_cast<unsigned char>(0));
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t j = 0; j < m_; ++j)
       for (const Piece& x : pieces(j)) {
@@ -257,6 +295,7 @@ void GridPad::Solver::add_sources() {
         B_[0][k] += x.share * pad_.cells_[i].normal.x();
         B_[1][k] += x.share * pad_.cells_[i].normal.y();
         if (pad_.open(i, x.band)) open_[k] = 1;
+        if (pad_.stepped(i, x.band)) stepped_[k] = 1;
       }
   for (std::size_t f = 0; f < faces(); ++f)
     for (std::size_t g = 0; g < bands_; ++g) {
@@ -271,33 +310,37 @@ void GridPad::Solver::add_sources() {
         }
     }
   for (std::size_t k = 0; k < size_; ++k)
-    b_[k] = B_[0][k] * in_.source[0] + B_[1][k] * in_.source[1] + B_[2][k] * in_.source[2];
-  const auto level = [&](std::size_t k) { return k == side ? 0.0 : in_.edge; };
-  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
-    if (known(k) && !known(l)) b_[l] += by * level(k);
-    if (known(l) && !known(k)) b_[k] += by * level(l);
-  });
+    across_in_[k] = B_[0][k] * in_.source[0] + B_[1][k] * in_.source[1] + B_[2][k] * in_.source[2];
+  std::fill_n(along_in_.begin(), size_, 0.0);
+  const auto from_known = [&](std::array<double, most>& to) {
+    return [&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+      const auto level = [&](std::size_t n) { return n == side ? 0.0 : in_.edge; };
+      if (known(k) && !known(l)) to[l] += by * level(k);
+      if (known(l) && !known(k)) to[k] += by * level(l);
+    };
+  };
+  for_each_link_along(from_known(along_in_));
+  for_each_link_across(from_known(across_in_));
 }
 
-void GridPad::Solver::couple(std::size_t k, std::size_t l, double by) {
-  if (wet(k)) entry(k, k) += by;
-  if (wet(l)) entry(l, l) += by;
+void GridPad::Solver::couple(std::size_t k, std::size_t l, double by_k, double by_l) {
+  if (wet(k)) entry(k, k) += by_k;
+  if (wet(l)) entry(l, l) += by_l;
   if (known(k) || known(l)) return;
   // ruptured film keeps what flows into it where mass is conserved
-  if (wet(k) && (wet(l) || carries_)) entry(l, k) -= by;
-  if (wet(l) && (wet(k) || carries_)) entry(k, l) -= by;
+  if (wet(k) && (wet(l) || carries_)) entry(l, k) -= by_l;
+  if (wet(l) && (wet(k) || carries_)) entry(k, l) -= by_k;
 }
 
-/// Distance from a node with film, the last one, to where the film ends, over that of the nodes.
-/// Pressures of the grid there are P(k) = P(0) (k + 1) + a k (k + 1)/2, k nodes away: a parabola about
-/// the place 1/2 + P(0)/a beyond.
-double GridPad::Solver::to_front(std::size_t before, std::size_t last) const {
-  if (before >= side || !film_[before]) return 1.0;
-  // a film of two nodes has no parabola
-  const std::size_t third = 2 * before - last;
-  if (third >= size_ || !film_[third] || P_[third] < P_[before]) return 1.0;
-  const double curvature = P_[before] - 2.0 * P_[last];
-  return curvature > P_[last] ? 0.5 + P_[last] / curvature : 1.5;
+void GridPad::Solver::couple_film() {
+  for_each_link_along([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    couple(k, l, by, by);
+  });
+  for_each_link_across([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    couple(k, l, share(k) * by, share(l) * by);
+  });
+  for (std::size_t k = 0; k < size_; ++k)
+    if (film_[k]) entry(k, k) += past_front(k);
 }
 
 /// The matrix of the nodes with film in two triangles; open recesses stand apart, as do dry nodes that
@@ -357,44 +400,181 @@ void GridPad::Solver::solve_transposed(double* x) const {
   }
 }
 
-/// Film where the pressures found are positive, and where a dry node would have to swallow more than
-/// `least`. False: nothing changed.
-bool GridPad::Solver::take_film(double least, bool may_form) {
-  std::copy_n(b_.begin(), size_, inflow_.begin());
-  for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+/// What nodes get along the arc and lose across it, at the last pressures.
+void GridPad::Solver::find_flows() {
+  std::copy_n(along_in_.begin(), size_, inflow_.begin());
+  for (std::size_t k = 0; k < size_; ++k)
+    lost_[k] = -across_in_[k];
+  for_each_link_along([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
     if (known(k) || known(l)) return;
     if (film_[l]) inflow_[k] += by * P_[l];
     if (film_[k]) inflow_[l] += by * P_[k];
   });
+  for_each_link_across([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    const auto of = [&](std::size_t n) { return wet(n) ? P_[n] : 0.0; };
+    if (!known(k)) lost_[k] += by * (of(k) - of(l));
+    if (!known(l)) lost_[l] += by * (of(l) - of(k));
+  });
+}
+
+/// Of the distance of two nodes, how far the film reaches beyond node k.
+double GridPad::Solver::reach(std::size_t k) const {
+  if (!may_part(k) || lost_[k] <= 0.0) return 1.0;
+  return std::clamp(std::sqrt(2.0 * own_[k] * std::max(P_[k], 0.0) / lost_[k]), least_reach, 1.0);
+}
+
+/// As reach, of a dry node that lacks too little: what it will be with the neighbours' pressures.
+double GridPad::Solver::first_reach(std::size_t k, double lacking) const {
+  if (!may_part(k) || lost_[k] <= 0.0) return 1.0;
+  const double given = 1.0 - lacking / lost_[k];  // 1/2 + s + s^2/2
+  return std::clamp(std::sqrt(2.0 * std::max(given, 0.0)) - 1.0, least_reach, 1.0);
+}
+
+/// What a dry node next to the film would lack at least.
+double GridPad::Solver::least_lacking(std::size_t k) const {
+  return may_part(k) ? 0.5 * std::max(lost_[k], 0.0) : 0.0;
+}
+
+/// Film where the pressures found are positive, and where a dry node would have to swallow more than
+/// `least`; fronts where those pressures place them. False: nothing changed.
+bool GridPad::Solver::take_film(double least, bool may_form) {
+  find_flows();
   bool changed = false;
   for (std::size_t k = 0; k < size_; ++k) {
     if (open_[k]) continue;
-    const unsigned char now = film_[k] ? P_[k] > 0.0 : may_form && inflow_[k] > least;
-    changed = changed || now != film_[k];
-    film_[k] = now;
+    if (film_[k]) {
+      const double s = reach(k), off = s - reach_[k];
+      changed = changed || P_[k] <= 0.0 || 0.5 * lost_[k] * off * off > least * reach_[k];
+      film_[k] = P_[k] > 0.0;
+      reach_[k] = film_[k] ? s : 1.0;
+      continue;
+    }
+    if (!may_form || inflow_[k] - lost_[k] + least_lacking(k) <= least) continue;
+    film_[k] = 1;
+    reach_[k] = first_reach(k, lost_[k] - inflow_[k]);
+    changed = true;
   }
   return changed;
 }
 
-void GridPad::Solver::find_film() {
-  // should the film not settle, it may only shrink from some pass on
-  constexpr int most_passes = 200, free_passes = 60;
-  constexpr double rounding = 1e-13;  // of the largest source
-  double size = 0.0;
+/// P with the film and its fronts where they are taken to be.
+void GridPad::Solver::solve_film() {
+  clear_matrix();
+  couple_film();
+  factor();
+  for (std::size_t k = 0; k < size_; ++k)
+    P_[k] = film_[k] ? along_in_[k] + share(k) * across_in_[k] : open_[k] ? in_.edge : 0.0;
+  solve(P_.data());
+}
+
+/// Film of one profile along the axis, to begin with: it takes a few passes where full films would take
+/// twenty.
+void GridPad::Solver::guess_film() {
+  struct Column {
+    double source = 0.0, across = 0.0, p = 0.0, pivot = 0.0;
+    bool film = true;
+  };
+  std::array<Column, most_columns> columns;
+  std::array<double, most_columns + 1> along{};
+  const auto profile = [&](std::size_t k, std::size_t j) {
+    return open_[k] ? 0.0 : pad_.rows_[j].profile;
+  };
+  for (std::size_t i = 0; i < n_; ++i) {
+    Column& own = columns[i];
+    own = {};
+    for (std::size_t j = 0; j < m_; ++j) {
+      const std::size_t k = at(i, j);
+      own.source += profile(k, j) * (along_in_[k] + across_in_[k]);
+    }
+    for (const Across& x : pad_.across_) {
+      const double far = x.to < m_ ? profile(at(i, x.to), x.to) : 0.0;
+      const double step = profile(at(i, x.from), x.from) - far;
+      own.across += x.conductance * sections_[i * bands_ + x.band].g * step * step;
+    }
+  }
+  for (std::size_t f = 0; f < faces(); ++f) {
+    const std::size_t l = left_of(f), r = right_of(f);
+    for (std::size_t j = 0; j < m_; ++j) {
+      const double before = l == groove ? 0.0 : profile(at(l, j), j),
+                   behind = r == groove ? 0.0 : profile(at(r, j), j);
+      along[f] += along_[f * m_ + j] * std::max(before * before, behind * behind);
+    }
+  }
+  if (pad_.round_) along[n_] = along[0];
+  // a circle is opened where most is swallowed
+  std::size_t first = 0;
+  if (pad_.round_)
+    for (std::size_t i = 1; i < n_; ++i)
+      if (columns[i].source < columns[first].source) first = i;
+  constexpr int most_passes = 60;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    double pivot = infinity, carried = 0.0;  // of the column before
+    for (std::size_t step = 0; step < n_; ++step) {
+      const std::size_t i = (first + step) % n_;
+      Column& own = columns[i];
+      if (!own.film) {
+        pivot = infinity;
+        carried = 0.0;
+        continue;
+      }
+      const double share = along[i] / pivot;
+      own.pivot = along[i] + along[i + 1] + own.across - share * along[i];
+      own.p = own.source + share * carried;
+      pivot = own.pivot;
+      carried = own.p;
+    }
+    double behind = 0.0;
+    for (std::size_t step = n_; step-- > 0;) {
+      const std::size_t i = (first + step) % n_;
+      Column& own = columns[i];
+      own.p = own.film ? (own.p + along[i + 1] * behind) / own.pivot : 0.0;
+      behind = own.p;
+    }
+    bool changed = false;
+    double before = 0.0;
+    for (std::size_t step = 0; step < n_; ++step) {
+      const std::size_t i = (first + step) % n_;
+      const double next = step + 1 < n_ ? columns[(i + 1) % n_].p : 0.0;
+      Column& own = columns[i];
+      const bool now =
+          own.film ? own.p > 0.0 : own.source + along[i] * before + along[i + 1] * next > 0.0;
+      before = own.p;
+      changed = changed || now != own.film;
+      own.film = now;
+    }
+    if (!changed) break;
+  }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j) {
+      const std::size_t k = at(i, j);
+      film_[k] = columns[i].film && !open_[k] ? 1 : 0;
+      reach_[k] = 1.0;
+    }
+}
+
+void GridPad::Solver::fill_all() {
   for (std::size_t k = 0; k < size_; ++k) {
     film_[k] = open_[k] ? 0 : 1;
-    size = std::max(size, std::abs(b_[k]));
+    reach_[k] = 1.0;
   }
+}
+
+void GridPad::Solver::find_film() {
+  // a film grows by a node a pass, so one that was begun with too little is begun again with all; should
+  // it not settle, it may only shrink from some pass on
+  constexpr int most_passes = 200, again = 12, free_passes = 72;
+  constexpr double rounding = 1e-13;  // of the largest source
+  double size = 0.0;
+  for (std::size_t k = 0; k < size_; ++k)
+    size = std::max(size, std::abs(along_in_[k] + across_in_[k]));
+  guess_film();
   for (int pass = 0; pass < most_passes; ++pass) {
-    clear_matrix();
-    for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
-      couple(k, l, by);
-    });
-    factor();
+    if (pass == again) fill_all();
+    solve_film();
+    if (take_film(rounding * size, pass < free_passes)) continue;
     for (std::size_t k = 0; k < size_; ++k)
-      P_[k] = film_[k] ? b_[k] : open_[k] ? in_.edge : 0.0;
-    solve(P_.data());
-    if (!take_film(rounding * size, pass < free_passes)) return;
+      lacking_[k] = lacking(k);
+    return;
   }
   P_[0] = nan;  // never seen; without a film that settles there is no force
 }
@@ -440,25 +620,27 @@ void GridPad::Solver::loads(GridLoad& out) const {
   out.shear = carries_ ? shear_carried() : shear_;
   if (!carries_) return;
   for (std::size_t k = 0; k < size_; ++k)
-    if (ruptured(k) && known(downstream(k))) out.fed += deficit(k);  // that does not come back
+    if (!open_[k] && known(downstream(k))) out.fed += deficit(k);  // that does not come back
 }
 
-/// How far the film of a link of which one node is dry reaches, over the distance of the nodes.
-double GridPad::Solver::to_front_of_link(std::size_t k, std::size_t l, std::size_t before,
-                                         std::size_t behind) const {
-  if (known(k) || known(l) || wet(k) == wet(l)) return 1.0;
-  // a film forms of carried oil with a slope, and what it gives back upstream comes again
-  if (wet(k)) return carries_ && !forward() ? 1.0 : to_front(before, k);
-  return carries_ && forward() ? 1.0 : to_front(behind, l);
+/// What a load feels of what node k lacks: at the node itself, and where that is handed on.
+double GridPad::Solver::lacked(int load, std::size_t k) {
+  double sum = adjoint(load)[k];
+  if (!carries_) return sum;
+  const std::size_t to = downstream(k);
+  if (!known(to)) sum -= handed_on(k) * adjoint(load)[to];
+  return load == 3 ? sum + shear_by_lacking_[k] : sum;
+}
+
+/// What it feels of what the node gets across the arc.
+double GridPad::Solver::across(int load, std::size_t k) {
+  return parted(k) ? adjoint(load)[k] - unmet(k) * lacked(load, k) : adjoint(load)[k];
 }
 
 void GridPad::Solver::slopes(GridSlopes& out) {
-  // a change of the pressure is none where the film ends: between two nodes
+  if (carries_) half_ = m_ + late_band;
   clear_matrix();
-  for_each_link(
-      [&](std::size_t k, std::size_t l, double by, std::size_t before, std::size_t behind) {
-        couple(k, l, by / to_front_of_link(k, l, before, behind));
-      });
+  couple_film();
   LoadSlopes to;
   for (int k = 0; k < 3; ++k)
     for (std::size_t c = 0; c < size_; ++c)
@@ -472,7 +654,7 @@ void GridPad::Solver::slopes(GridSlopes& out) {
     solve_transposed(adjoint(k).data());
     for (std::size_t l = 0; l < 3; ++l)
       for (std::size_t c = 0; c < size_; ++c)
-        to.by_source(k, static_cast<Index>(l)) += adjoint(k)[c] * B_[l][c];
+        to.by_source(k, static_cast<Index>(l)) += across(k, c) * B_[l][c];
   }
   if (carries_) add_slopes_of_squeeze(to);
   add_slopes_of_flows(to);
@@ -489,6 +671,7 @@ void GridPad::Solver::add_slopes_of_flows(LoadSlopes& to) {
   const int loads = carries_ ? 4 : 3;
   const double S = in_.source[2];
   const auto value = [&](int k, std::size_t c) { return c >= side ? 0.0 : adjoint(k)[c]; };
+  const auto crossed = [&](int k, std::size_t c) { return c >= side ? 0.0 : across(k, c); };
   for (std::size_t f = 0; f < faces(); ++f)
     for (std::size_t g = 0; g < bands_; ++g) {
       const Stretch x = face(f, g);
@@ -513,7 +696,17 @@ void GridPad::Solver::add_slopes_of_flows(LoadSlopes& to) {
       const Vec3 dq =
           (pressure(k) - pressure(l)) * x.conductance * sections_[i * bands_ + x.band].dg;
       for (int row = 0; row < loads; ++row)
-        to.by.row(row) += (value(row, l) - value(row, k)) * dq.transpose();
+        to.by.row(row) += (crossed(row, l) - crossed(row, k)) * dq.transpose();
+    }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j) {
+      const std::size_t k = at(i, j);
+      if (past_front(k) == 0.0) continue;
+      Vec3 down = Vec3::Zero();
+      own(i, j, &down);
+      const Vec3 dq = P_[k] * past_front(k) / own_[k] * down;
+      for (int row = 0; row < loads; ++row)
+        to.by.row(row) -= lacked(row, k) * dq.transpose();
     }
 }
 
@@ -562,6 +755,12 @@ GridField GridPad::Solver::field() const {
   return out;
 }
 
+/// What the flow between two neighbours along the arc lacks where one is dry.
+double GridPad::Solver::lacking_past(std::size_t l, std::size_t r) const {
+  if (wet(l) == wet(r)) return 0.0;
+  return wet(l) ? deficit(l) : -deficit(r);
+}
+
 /// Flow past every face. Where no film is, a row carries what left the film before it, or what the next
 /// one begins with.
 void GridPad::Solver::add_flow(GridField& out) const {
@@ -590,7 +789,8 @@ void GridPad::Solver::add_flow(GridField& out) const {
       const double dragged = S * (in_.clearance * circle + x.s / x.r);
       const double pushed = at_side ? 0.0 : (pressure(r) - pressure(l)) / x.r;
       if (!in_track && std::abs(dragged) < std::abs(least)) least = dragged;
-      if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0)) now = dragged - pushed;
+      if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0))
+        now = dragged - pushed - (at_side ? 0.0 : lacking_past(l, r) / row_share(j));
       flow[f] = now;
     }
     // a row without film; all of it a track: no film at all
@@ -663,6 +863,9 @@ void GridPad::Solver::add_heat(GridField& out) const {
     out.gap.push_back(gap);
     out.conducting.push_back(conducting);
   }
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < m_; ++j)
+      driven[i + 1] -= pressure(at(i, j)) * deficit(at(i, j));
   if (carries_) take_out_dry(shear, driven, out);
   for (std::size_t f = 0; f < n_; ++f) {
     driven[f + 1] += driven[f];

@@ -17,10 +17,13 @@
 // problem is solved by policy iteration, which ends at its one solution where the matrix is an M-matrix
 // (O. Bokanowski, S. Maroso, H. Zidani, SIAM J. Numer. Anal. 47, 2009, doi 10.1137/08073041X); quadratic
 // elements spoil the sign of one coupling in eight. A film that does not settle has no force (NaN).
-// Derivatives by the adjoint equation, to rounding where the film is full. Where it ruptures they are
-// those of a film whose front lies inside a cell, found from the pressures before it, which is ten times
-// closer to the truth than slopes of the discrete loads: those jump by some 1e-2 as cells dry, the loads
-// themselves by less than 1e-3.
+// Where the film ends its pressure is a parabola, P = r s^2/(2 k) at the last node, s of the distance to
+// the next one beyond it, r what its cell loses across the arc, k its conductance along it. What leaves
+// the film there is (s - 1/2) r, where the grid has s^2/2 r: the cell lacks r (1 - s)^2/2, which goes
+// to zero smoothly as the next node gets film. That is the largest over s of
+// (1 - s)/2 r - (1 - s)/s k P, so policy iteration, over s too, still rises to the one solution, and
+// forces and their slopes know next to nothing of the grid. (Not beside steps of the surface, where
+// pressures have a corner.) Derivatives by the adjoint equation, to rounding.
 //
 // Films that conserve mass carry what flows into ruptured nodes on along the arc, at no pressure, and form
 // where that fills the gap (Elrod; grid_film_carried.cpp). Every node is in balance to rounding, so that
@@ -127,6 +130,7 @@ class GridPad {
   };
   struct Row {
     std::vector<Piece> pieces;
+    double profile = 0;  ///< of a parabola along the axis
   };
   /// Between two rows; to one more than there are: the side. For a unit of int a h^3 dtheta.
   struct Across {
@@ -139,6 +143,8 @@ class GridPad {
     return depth_[i * bands_ + g];
   }
   bool open(std::size_t i, std::size_t g) const { return open_[i * bands_ + g] != 0; }
+  bool stepped(std::size_t i, std::size_t g) const { return stepped_[i * bands_ + g] != 0; }
+  void mark_steps();
   class Solver;
 
   double start_, arc_, ratio_;
@@ -151,6 +157,7 @@ class GridPad {
   std::array<double, most_bands> band_shares_{};
   std::vector<std::array<double, 4>> depth_;
   std::vector<unsigned char> open_;
+  std::vector<unsigned char> stepped_;  ///< beside an edge where the depth jumps
 };
 
 }  // namespace whirl::elements

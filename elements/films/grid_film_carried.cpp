@@ -81,27 +81,96 @@ void GridPad::Solver::add_handed_on() {
     }
 }
 
+/// What is handed on of what node k lacks: as much, or with the squeeze of the node behind.
+double GridPad::Solver::handed_on(std::size_t k) const {
+  return beyond_[k] ? 1.0 : 1.0 + shared_[k];
+}
+
 void GridPad::Solver::couple_carried() {
   for (std::size_t k = 0; k < size_; ++k) {
     if (!ruptured(k)) continue;
     entry(k, k) += 1.0;
-    if (!known(downstream(k))) entry(downstream(k), k) -= beyond_[k] ? 1.0 : 1.0 + shared_[k];
+    if (!known(downstream(k))) entry(downstream(k), k) -= handed_on(k);
   }
+  // what a node lacks in which the film ends, (1 - s)/2 lost - past_front P
+  for_each_parted(
+      [&](std::size_t k, std::size_t to) { entry(to, k) -= handed_on(k) * past_front(k); });
+  for_each_link_of_parted([&](std::size_t k, std::size_t l, std::size_t to, double by) {
+    entry(to, k) += by;
+    if (wet(l) && in_band(to, l)) entry(to, l) -= by;
+  });
+}
+
+/// see(k, to): the film ends at k, and what it lacks goes on to node `to`.
+template <class See>
+void GridPad::Solver::for_each_parted(const See& see) const {
+  for (std::size_t k = 0; k < size_; ++k)
+    if (parted(k) && !known(downstream(k))) see(k, downstream(k));
+}
+
+/// see(k, l, to, by): as for_each_parted, with the neighbours l across the arc and the share of their
+/// link that is handed on.
+template <class See>
+void GridPad::Solver::for_each_link_of_parted(const See& see) const {
+  for_each_link_across([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    for (const auto& [own, far] : {std::pair{k, l}, std::pair{l, k}}) {
+      if (!parted(own) || known(downstream(own))) continue;
+      see(own, far, downstream(own), handed_on(own) * unmet(own) * by);
+    }
+  });
+}
+
+/// What of that is out of the band, by the pressures of the pass before.
+void GridPad::Solver::find_late() {
+  std::fill_n(late_.begin(), size_, 0.0);
+  for_each_link_of_parted([&](std::size_t, std::size_t l, std::size_t to, double by) {
+    if (wet(l) && !in_band(to, l)) late_[to] += by * P_[l];
+  });
 }
 
 /// Where P_ is stands P of film, and less what ruptured nodes lack.
 void GridPad::Solver::solve_carried() {
+  find_late();
   clear_matrix();
-  for_each_link(
-      [&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) { couple(k, l, by); });
+  couple_film();
   couple_carried();
   factor();
   for (std::size_t k = 0; k < size_; ++k)
-    P_[k] = open_[k] ? in_.edge : b_[k];
-  for (std::size_t k = 0; k < size_; ++k)
-    if (ruptured(k) && beyond_[k] && !known(downstream(k)))
-      P_[downstream(k)] -= squeeze(downstream(k));
+    P_[k] = open_[k] ? in_.edge : along_in_[k] + share(k) * across_in_[k] + late_[k];
+  for (std::size_t k = 0; k < size_; ++k) {
+    const std::size_t to = downstream(k);
+    if (film_[k] && !parted(k)) continue;
+    if (open_[k] || known(to)) continue;
+    if (parted(k)) P_[to] += handed_on(k) * unmet(k) * across_in_[k];
+    if (beyond_[k]) P_[to] -= squeeze(to);
+  }
   solve(P_.data());
+}
+
+/// What node k lacks, its P_ that of solve_carried.
+double GridPad::Solver::lacking(std::size_t k) const {
+  if (open_[k]) return 0.0;
+  if (!film_[k]) return std::max(0.0, -P_[k]);
+  if (!may_part(k) || lost_[k] <= 0.0) return 0.0;
+  const double off = 1.0 - reach(k);
+  return 0.5 * lost_[k] * off * off;
+}
+
+/// Fronts where the pressures place them. False: where they were.
+bool GridPad::Solver::move_fronts(double rounding) {
+  bool moved = false;
+  for (std::size_t k = 0; k < size_; ++k) {
+    if (!film_[k] || P_[k] <= 0.0) continue;
+    const double s = reach(k), off = s - reach_[k];
+    moved = moved || 0.5 * lost_[k] * off * off > rounding * reach_[k];
+    reach_[k] = s;
+  }
+  const std::array<double, most>& before = inflow_;
+  std::copy_n(late_.begin(), size_, inflow_.begin());
+  find_late();
+  for (std::size_t k = 0; k < size_; ++k)
+    moved = moved || std::abs(late_[k] - before[k]) > rounding;
+  return moved;
 }
 
 /// False: it does not settle.
@@ -111,12 +180,18 @@ bool GridPad::Solver::settle_carried(double rounding) {
   int spare = most_spare;
   for (int pass = 0; pass < most_passes; ++pass) {
     solve_carried();
-    const auto fills = [&](std::size_t k) { return P_[k] > (film_[k] ? 0.0 : rounding); };
-    const auto lacks_much = [&](std::size_t k) { return -P_[k] >= limit_[k] - rounding; };
+    find_flows();
+    const auto fills = [&](std::size_t k) {
+      return film_[k] ? P_[k] > 0.0 : P_[k] + least_lacking(k) > rounding;
+    };
+    const auto lacks_much = [&](std::size_t k) { return lacking(k) >= limit_[k] - rounding; };
+    const auto turns = [&](std::size_t k) {
+      const bool some = !film_[k] || (P_[k] > 0.0 && reach(k) < 1.0);
+      return some && limit_[k] > 0.0 && lacks_much(k) != (beyond_[k] != 0);
+    };
     const auto wrong = [&](std::size_t k) {
       if (open_[k]) return false;
-      if (fills(k) != (film_[k] != 0)) return true;
-      return !film_[k] && limit_[k] > 0.0 && lacks_much(k) != (beyond_[k] != 0);
+      return fills(k) != (film_[k] != 0) || turns(k);
     };
     std::size_t found = 0, last = 0;
     for (std::size_t k = 0; k < size_; ++k)
@@ -124,16 +199,21 @@ bool GridPad::Solver::settle_carried(double rounding) {
         ++found;
         last = k;
       }
-    if (found == 0) return true;
     const bool nearer = found < fewest;
     if (nearer) fewest = found;
-    spare = nearer ? most_spare : spare - 1;
+    if (found > 0) spare = nearer ? most_spare : spare - 1;
     const bool all = spare >= 0;
-    for (std::size_t k = 0; k < size_; ++k)
+    for (std::size_t k = 0; k < size_ && found > 0; ++k)
       if (all ? wrong(k) : k == last) {
-        beyond_[k] = !film_[k] && lacks_much(k) ? 1 : 0;
-        film_[k] = fills(k) ? 1 : 0;
+        const bool film = fills(k);
+        if (turns(k)) beyond_[k] = lacks_much(k) ? 1 : 0;
+        if (film && !film_[k]) reach_[k] = first_reach(k, -P_[k]);
+        if (!film) reach_[k] = 1.0;
+        if (film == (film_[k] != 0)) continue;
+        film_[k] = film ? 1 : 0;
+        P_[k] = 0.0;
       }
+    if (!move_fronts(rounding) && found == 0) return true;
   }
   return false;
 }
@@ -141,30 +221,37 @@ bool GridPad::Solver::settle_carried(double rounding) {
 void GridPad::Solver::find_carried() {
   constexpr double rounding = 1e-13;  // of the largest source
   double size = 0.0;
-  for (std::size_t k = 0; k < size_; ++k) {
-    film_[k] = open_[k] ? 0 : 1;
-    size = std::max(size, std::abs(b_[k]));
-  }
+  for (std::size_t k = 0; k < size_; ++k)
+    size = std::max(size, std::abs(along_in_[k] + across_in_[k]));
+  if (bands_ == 1)
+    guess_film();
+  else
+    fill_all();
+  std::fill_n(P_.begin(), size_, 0.0);
   add_handed_on();
   const bool settled = settle_carried(rounding * size);
-  for (std::size_t k = 0; k < size_; ++k) {
-    if (!ruptured(k)) continue;
-    lacking_[k] = std::max(0.0, -P_[k]);
-    P_[k] = 0.0;
-  }
+  for (std::size_t k = 0; k < size_; ++k)
+    lacking_[k] = lacking(k);
+  for (std::size_t k = 0; k < size_; ++k)
+    if (ruptured(k)) P_[k] = 0.0;
   if (!settled) P_[0] = nan;  // as find_film
 }
 
-/// see(i, j, k, before, behind): k ruptured, with what would be dragged past the faces of its cell,
-/// in the sense of the journal.
+/// see(i, j, k, before, behind): k ruptured in part at least, with what would be dragged past the faces
+/// of its cell, in the sense of the journal.
 template <class See>
 void GridPad::Solver::for_each_ruptured_cell(const See& see) const {
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t j = 0; j < m_; ++j) {
       const std::size_t k = at(i, j);
-      if (!ruptured(k)) continue;
+      if (!ruptured(k) && !parted(k)) continue;
       see(i, j, k, dragged(forward() ? i : i + 1, j), dragged(forward() ? i + 1 : i, j));
     }
+}
+
+/// The node behind which the cell of k begins as ruptured; a film that forms begins full.
+std::size_t GridPad::Solver::ruptured_before(std::size_t k) const {
+  return ruptured(k) || !ruptured(upstream(k)) ? upstream(k) : groove;
 }
 
 /// see(i, before, behind, passed_before, passed_behind): at the side, where no pressure is, the least
@@ -189,7 +276,7 @@ double GridPad::Solver::shear_carried() const {
   for_each_ruptured_cell([&](std::size_t i, std::size_t j, std::size_t k, const Dragged& before,
                              const Dragged& behind) {
     const double full = before.value + behind.value;
-    const double dry = std::min(1.0, (deficit(upstream(k)) + deficit(k)) / full);
+    const double dry = std::min(1.0, (deficit(ruptured_before(k)) + deficit(k)) / full);
     for (const Piece& x : pieces(j))
       out -= dry * x.share * walls_[i * bands_ + x.band];
   });
@@ -219,7 +306,7 @@ void GridPad::Solver::take_out_dry(std::vector<double>& shear, std::vector<doubl
   for_each_ruptured_cell([&](std::size_t i, std::size_t j, std::size_t k, const Dragged& before,
                              const Dragged& behind) {
     const double full = before.value + behind.value;
-    const double dry = std::min(1.0, (deficit(upstream(k)) + deficit(k)) / full);
+    const double dry = std::min(1.0, (deficit(ruptured_before(k)) + deficit(k)) / full);
     for (const Piece& x : pieces(j))
       take(i, x.band, dry * x.share);
     out.filled[forward() ? i + 1 : i] -= (forward() ? 1.0 : -1.0) * deficit(k);
@@ -237,11 +324,12 @@ void GridPad::Solver::take_out_dry(std::vector<double>& shear, std::vector<doubl
 /// Right side of the adjoint of the shear, and what changes it at given pressures.
 void GridPad::Solver::add_shear_slopes(LoadSlopes& to) {
   adjoint(3).fill(0.0);
+  std::fill_n(shear_by_lacking_.begin(), size_, 0.0);
   to.by.row(3) += dshear_.transpose();
   for_each_ruptured_cell([&](std::size_t i, std::size_t j, std::size_t k, const Dragged& before,
                              const Dragged& behind) {
     const double full = before.value + behind.value;
-    const double dry = (deficit(upstream(k)) + deficit(k)) / full;
+    const double dry = (deficit(ruptured_before(k)) + deficit(k)) / full;
     for (const Piece& x : pieces(j)) {
       const std::size_t g = i * bands_ + x.band;
       const double walls = x.share * walls_[g];
@@ -252,8 +340,10 @@ void GridPad::Solver::add_shear_slopes(LoadSlopes& to) {
       to.by.row(3) +=
           (walls * dry / full * (before.by + behind.by) - dry * x.share * dwalls_[g]).transpose();
       to.by_source(3, 2) += walls * dry / in_.source[2];
-      for (const std::size_t n : {k, upstream(k)})
+      for (const std::size_t n : {k, ruptured_before(k)}) {
         if (ruptured(n)) adjoint(3)[n] += walls / full;
+        if (parted(n)) shear_by_lacking_[n] -= walls / full;
+      }
     }
   });
   for_each_cell_at_side([&](std::size_t i, const Dragged& before, const Dragged& behind,
@@ -262,6 +352,16 @@ void GridPad::Solver::add_shear_slopes(LoadSlopes& to) {
     const double full = before.value + behind.value, wet = (passed.value + next.value) / full;
     const Vec3 dwet = (passed.by + next.by - wet * (before.by + behind.by)) / full;
     to.by.row(3) += pad_.side_share_ * (walls_[g] * dwet - (1.0 - wet) * dwalls_[g]).transpose();
+  });
+  for (std::size_t k = 0; k < size_; ++k)
+    if (parted(k)) adjoint(3)[k] -= shear_by_lacking_[k] * past_front(k);
+  for_each_link_across([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
+    for (const auto& [own, far] : {std::pair{k, l}, std::pair{l, k}}) {
+      if (!parted(own)) continue;
+      const double lost = shear_by_lacking_[own] * unmet(own) * by;
+      adjoint(3)[own] += lost;
+      if (wet(far)) adjoint(3)[far] -= lost;
+    }
   });
 }
 
@@ -272,7 +372,7 @@ void GridPad::Solver::add_slopes_of_squeeze(LoadSlopes& to) {
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t j = 0; j < m_; ++j) {
       const std::size_t k = at(i, j), next = downstream(k);
-      if (!ruptured(k) || known(next)) continue;
+      if (known(next) || (!ruptured(k) && !parted(k))) continue;
       const Vec2 n(B_[0][next], B_[1][next]);
       Vec2 by_motion = n;  // of the squeeze, or of the share times what k lacks
       Vec3 by_gap = Vec3::Zero();

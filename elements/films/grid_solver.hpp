@@ -42,7 +42,7 @@ class GridPad::Solver {
 
  private:
   static constexpr std::size_t most = static_cast<std::size_t>(most_columns) * most_rows;
-  static constexpr std::size_t most_band = 2 * most_rows + 1;
+  static constexpr std::size_t late_band = 2, most_band = 2 * (most_rows + late_band) + 1;
   /// A stretch along the arc: int 1/(a h^3), int D/(a h^3), int D^2/(a h^3); slopes by e_y, e_z,
   /// reynolds.
   struct Stretch {
@@ -74,14 +74,41 @@ class GridPad::Solver {
   void add_conductances();
   void add_sources();
   void find_film();
+  void guess_film();
+  void fill_all();
+  void solve_film();
   bool take_film(double least, bool may_form);
+  void find_flows();
+  static constexpr double least_reach = 1e-12;
+  double reach(std::size_t k) const;
+  double first_reach(std::size_t k, double lacking) const;
+  double own(std::size_t i, std::size_t j, Vec3* slope = nullptr) const;
+  /// Of its cell that is in balance.
+  double share(std::size_t k) const { return 0.5 * (1.0 + reach_[k]); }
+  double past_front(std::size_t k) const { return own_[k] * (1.0 - reach_[k]) / reach_[k]; }
+  /// (1 - s)/2
+  double unmet(std::size_t k) const { return 0.5 * (1.0 - reach_[k]); }
+  bool parted(std::size_t k) const { return wet(k) && reach_[k] < 1.0; }
+  double least_lacking(std::size_t k) const;
+  double lacking(std::size_t k) const;
+  double lacking_past(std::size_t l, std::size_t r) const;
+  double row_share(std::size_t j) const {
+    double sum = 0.0;
+    for (const Piece& x : pieces(j))
+      sum += x.share;
+    return sum;
+  }
+  double lacked(int load, std::size_t k);
+  double across(int load, std::size_t k);
+  bool may_part(std::size_t k) const { return stepped_[k] == 0; }
   template <class Link>
   void for_each_link(const Link& link) const;
+  template <class Link>
+  void for_each_link_along(const Link& link) const;
+  template <class Link>
+  void for_each_link_across(const Link& link) const;
   void add_flow(GridField& out) const;
   void add_heat(GridField& out) const;
-  double to_front(std::size_t before, std::size_t wet) const;
-  double to_front_of_link(std::size_t k, std::size_t l, std::size_t before,
-                          std::size_t behind) const;
   std::array<double, most>& adjoint(int load) { return lambda_[static_cast<std::size_t>(load)]; }
   /// Slopes of the loads and, in the last row, of the shear: by the source; by e and reynolds.
   struct LoadSlopes {
@@ -101,6 +128,17 @@ class GridPad::Solver {
   void add_dragged(Dragged& to, std::size_t f, const Piece& piece) const;
   void find_carried();
   bool settle_carried(double rounding);
+  bool move_fronts(double rounding);
+  void find_late();
+  double handed_on(std::size_t k) const;
+  bool in_band(std::size_t row, std::size_t column) const {
+    return std::max(row, column) - std::min(row, column) <= half_;
+  }
+  template <class See>
+  void for_each_parted(const See& see) const;
+  template <class See>
+  void for_each_link_of_parted(const See& see) const;
+  std::size_t ruptured_before(std::size_t k) const;
   void add_handed_on();
   void couple_carried();
   void solve_carried();
@@ -118,7 +156,8 @@ class GridPad::Solver {
   void take_out_dry(std::vector<double>& shear, std::vector<double>& driven, GridField& out) const;
 
   void clear_matrix() { std::fill_n(a_.begin(), size_ * (2 * half_ + 1), 0.0); }
-  void couple(std::size_t k, std::size_t l, double by);
+  void couple(std::size_t k, std::size_t l, double by_k, double by_l);
+  void couple_film();
   void factor();
   void solve(double* x) const;
   void solve_transposed(double* x) const;
@@ -167,7 +206,7 @@ class GridPad::Solver {
   std::size_t downstream(std::size_t k) const { return next(k, forward()); }
   bool ruptured(std::size_t k) const { return k < side && !film_[k] && !open_[k]; }
   /// What the film past node k lacks in flow, of a film that conserves mass.
-  double deficit(std::size_t k) const { return ruptured(k) ? lacking_[k] : 0.0; }
+  double deficit(std::size_t k) const { return k < side ? lacking_[k] : 0.0; }
   std::size_t far_node(std::size_t i, const Across& x) const {
     return x.to < m_ ? at(i, x.to) : side;
   }
@@ -182,16 +221,21 @@ class GridPad::Solver {
   std::array<Half, 2 * most_columns * most_bands> half_cells_;
   std::array<Section, most_columns * most_bands> sections_;
   std::array<double, (most_columns + 1) * most_rows> along_;  ///< conductance of face f in row j
-  std::array<double, most> P_, b_, inflow_;
+  std::array<double, most> P_, inflow_;
+  /// What comes to a node along the arc from grooves and tracks; across it, with the sources.
+  std::array<double, most> along_in_, across_in_;
+  /// Of a node, for a front near it: the conductance of its own cell along the arc; what it loses
+  /// across the arc at the last pressures; of the distance of two nodes, how far film reaches beyond it.
+  std::array<double, most> own_, lost_, reach_;
   std::array<std::array<double, most>, 4> lambda_;
   /// Where mass is conserved: what the flow past a ruptured node lacks against a full gap; how it hands
   /// on the squeeze of the node behind.
-  std::array<double, most> lacking_, limit_, shared_;
+  std::array<double, most> lacking_, limit_, shared_, late_, shear_by_lacking_;
   std::array<unsigned char, most> beyond_;
   std::array<double, most_columns * most_bands> walls_;  ///< int mu f_s/h of a cell in a band
   std::array<Vec3, most_columns * most_bands> dwalls_;
   std::array<std::array<double, most>, 3> B_;
-  std::array<unsigned char, most> film_, open_;
+  std::array<unsigned char, most> film_, open_, stepped_;
   std::array<double, most * most_band> a_;
 };
 
@@ -199,6 +243,12 @@ class GridPad::Solver {
 /// the nodes before k and behind l. Either may be `groove`, l `side`.
 template <class Link>
 void GridPad::Solver::for_each_link(const Link& link) const {
+  for_each_link_along(link);
+  for_each_link_across(link);
+}
+
+template <class Link>
+void GridPad::Solver::for_each_link_along(const Link& link) const {
   for (std::size_t f = 0; f < faces(); ++f) {
     const std::size_t l = left_of(f), r = right_of(f);
     const std::size_t before = l == groove ? groove : left_of(l);
@@ -206,6 +256,10 @@ void GridPad::Solver::for_each_link(const Link& link) const {
     for (std::size_t j = 0; j < m_; ++j)
       link(node(l, j), node(r, j), along_[f * m_ + j], node(before, j), node(behind, j));
   }
+}
+
+template <class Link>
+void GridPad::Solver::for_each_link_across(const Link& link) const {
   for (std::size_t i = 0; i < n_; ++i)
     for (const Across& x : pad_.across_)
       link(at(i, x.from), far_node(i, x), x.conductance * sections_[i * bands_ + x.band].g, groove,

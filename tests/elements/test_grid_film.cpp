@@ -358,6 +358,76 @@ TEST(GridFilm, RoundFilmsAreSmoothInEveryDirection) {
   EXPECT_LT(most / least - 1.0, 1e-4);
 }
 
+/// Of the force of a journal at e, turned from `from` to `to` against its grid: the largest part that
+/// comes again with the cells, over the force. What a mean over a cell keeps is not of the grid.
+double trace_of_grid(const FiniteJournal& film, double e, double from, double to) {
+  constexpr int a_cell = 10, half = a_cell / 2;
+  const JournalSurface::Arc& arc = film.surface->arcs()[0];
+  const double step = arc.length / (*film.grid)[0].columns() / a_cell;
+  std::vector<Vec2> F;  // along the eccentricity and across it
+  for (double angle = from; angle < to; angle += step) {
+    const Vec2 n(std::cos(angle), std::sin(angle)), t(-n.y(), n.x());
+    const Vec2 f = force(film, e * c * n, Vec2::Zero(), Omega).F;
+    F.emplace_back(f.dot(n), f.dot(t));
+  }
+  std::vector<Vec2> rest = F;
+  for (int times = 0; times < 3; ++times) {
+    std::vector<Vec2> less;
+    for (std::size_t k = half; k + half < rest.size(); ++k) {
+      Vec2 sum = 0.5 * (rest[k - half] + rest[k + half]);
+      for (std::size_t i = k - half + 1; i < k + half; ++i)
+        sum += rest[i];
+      less.push_back(rest[k] - sum / a_cell);
+    }
+    rest = less;
+  }
+  double worst = 0.0;
+  for (std::size_t k = 0; k < rest.size(); ++k)
+    worst = std::max(worst, rest[k].norm() / F[k + 3 * half].norm());
+  return worst;
+}
+
+TEST(GridFilm, ForcesShowNoGrid) {
+  const FiniteJournal round = on_grid({}, 0.07, 240, {}),
+                      split = on_grid(two_groove_pads(0.0, 20 * degree), 0.07, 240, {}),
+                      lobes = on_grid(lobe_pads(3, 0.5 * pi, 20 * degree), 0.05, 240, {}, 0.5);
+  for (const double e : {0.3, 0.6, 0.85, 0.9}) {
+    EXPECT_LT(trace_of_grid(round, e, 0.1, 0.25), 2e-5) << e;
+    EXPECT_LT(trace_of_grid(lobes, e, 110 * degree, 130 * degree), 2e-5) << e;
+    EXPECT_LT(trace_of_grid(split, e, 60 * degree, 80 * degree), 1e-4) << e;
+  }
+  // where the film is shortest, a few cells behind a groove
+  EXPECT_LT(trace_of_grid(split, 0.85, 20 * degree, 40 * degree), 1e-4);
+}
+
+TEST(GridFilm, RupturedFilmsHaveTheirOwnSlopes) {
+  const FiniteJournal film = dam_bearing(120);
+  const FilmLaw<FiniteJournal> law{film};
+  for (const Vec2& e : {Vec2(0.3, -0.4), Vec2(0.5, -0.45), Vec2(-0.1, -0.2)}) {
+    LateralMotion m;
+    m.r = c * e;
+    m.v.setZero();
+    m.spin = Omega;
+    Vector<4> z;
+    LateralTangent t;
+    t.set_zero();
+    law.tangent(m, z, t);
+    const double h = 1e-6 * c;
+    for (Index k = 0; k < 2; ++k) {
+      const auto at = [&](double dr, double dv) {
+        Vec2 r = m.r, v = Vec2::Zero();
+        r[k] += dr;
+        v[k] += dv;
+        return force(film, r, v, Omega).F;
+      };
+      const double w = h * Omega;
+      const Vec2 K = (at(h, 0) - at(-h, 0)) / (2 * h), C = (at(0, w) - at(0, -w)) / (2 * w);
+      EXPECT_LT((t.r.col(k).head<2>() - K).norm(), 1e-6 * t.r.norm()) << e.transpose();
+      EXPECT_LT((t.v.col(k).head<2>() - C).norm(), 1e-6 * t.v.norm()) << e.transpose();
+    }
+  }
+}
+
 TEST(GridFilm, AMirroredBearingTurnsTheOtherWay) {
   // y -> -y: the pocket begins at the other end of its pad
   std::vector<Recess> pocket = dam();

@@ -627,8 +627,8 @@ TEST(MassConservingOnGrid, ForceIsAsSmoothAsReynolds) {
   const FiniteJournal b = on_grid(conserving(0.06, split()));
   FiniteJournal reynolds = b;
   reynolds.mass_conserving = false;
-  EXPECT_LT(kink(b), 1.5 * kink(reynolds));
-  EXPECT_LT(kink(b), 1e-4);
+  EXPECT_LT(kink(reynolds), 5e-6);
+  EXPECT_LT(kink(b), 5e-6);
 }
 
 TEST(MassConservingOnGrid, SettlesAndLosesPowerInEveryMotion) {
