@@ -150,8 +150,15 @@ class System {
   /// @pre exchanging_nodes() is not empty, f is not moved.
   bool evaluate_exchanging(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                            Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
-    WHIRL_EXPECTS(!exchanging_.empty() && !f.moved());
-    return evaluate_nodes(w, f, t, q, v, a, exchanging_);
+    return evaluate_some(w, f, t, q, v, a, exchanging_);
+  }
+  /// Some nodes alone, ascending; the states of all others are then unknown.
+  /// @pre there are some, f is not moved, no node follows others.
+  bool evaluate_some(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                     Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a,
+                     std::span<const Index> nodes) const {
+    WHIRL_EXPECTS(!nodes.empty() && !f.moved() && followers_.empty());
+    return evaluate_nodes(w, f, t, q, v, a, nodes);
   }
   /// Some of the terms, as numbers into terms(); a null pointer means all.
   using Selection = const std::vector<std::size_t>*;

@@ -553,15 +553,28 @@ bool Collocation::dense_some(double theta, std::span<const Index> entries, Ref q
   return true;
 }
 
-bool Collocation::dense_entries(double theta, std::span<const Index> entries, Ref q) const {
-  WHIRL_EXPECTS(h_ > 0.0);
+template <int S>
+void Collocation::dense_entries_of(double theta, std::span<const Index> entries, Ref q) const {
+  WHIRL_EXPECTS(s_ == S && h_ > 0.0);
   const Tableau::Basis b = tab_.basis(theta);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Index k = entries[i];
-    double at = q0_[k] + (theta * h_) * v0_[k];
-    for (int j = 0; j < s_; ++j)
-      at += (h_ * h_ * b.l2[static_cast<std::size_t>(j)]) * a_last_(k, j);
-    q[static_cast<Index>(i)] = at;
+  double on_q[S];
+  for (int j = 0; j < S; ++j)
+    on_q[j] = h_ * h_ * b.l2[static_cast<std::size_t>(j)];
+  const double along = theta * h_;
+  double* out = q.data();
+  for (const Index k : entries) {
+    double at = q0_[k] + along * v0_[k];
+    for (int j = 0; j < S; ++j)
+      at += on_q[j] * a_last_(k, j);
+    *out++ = at;
+  }
+}
+
+bool Collocation::dense_entries(double theta, std::span<const Index> entries, Ref q) const {
+  switch (s_) {
+    case 1: dense_entries_of<1>(theta, entries, q); break;
+    case 2: dense_entries_of<2>(theta, entries, q); break;
+    default: dense_entries_of<3>(theta, entries, q);
   }
   return true;
 }

@@ -33,6 +33,8 @@ class Collocation final : public Stepper {
   template <class Entry>
   void dense_at(double theta, Index count, const Entry& entry, Ref q, Ref v, Ref a) const;
   bool dense_some(double theta, std::span<const Index> entries, Ref q, Ref v, Ref a) const override;
+  template <int S>
+  void dense_entries_of(double theta, std::span<const Index> entries, Ref q) const;
   bool dense_entries(double theta, std::span<const Index> entries, Ref q) const override;
   void dense(double theta, Ref q, Ref v, Ref a) const override;
   void save_history(std::vector<double>& out) const override;

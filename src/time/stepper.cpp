@@ -472,8 +472,9 @@ bool Stepper::interpolate_entries(double t, std::span<const Index> entries, Ref 
       q[static_cast<Index>(i)] = (*known)[entries[i]];
     return true;
   }
+  const std::span<const Kind> kinds = problem_.kinds();
   for (const Index k : entries)
-    if (std::binary_search(held_.begin(), held_.end(), k)) return false;
+    if (kinds[static_cast<std::size_t>(k)] == Kind::held) return false;
   return dense_entries(((t - t0_) - t0_low_) / h_, entries, q);
 }
 

@@ -2,6 +2,7 @@
 // energy that a motion turns over.
 #include "rotors.hpp"
 #include <analysis/transient/observer.hpp>
+#include <analysis/transient/revolutions.hpp>
 #include <analysis/transient/transient.hpp>
 #include <gtest/gtest.h>
 
@@ -69,16 +70,19 @@ struct DenseSearch final : analysis::Observer {
   std::vector<double> amplitude, spin;
 };
 
-/// Shaft with a disk in unequal springs, undamped, let go from a bent shape.
+/// Shaft with a disk in unequal springs, undamped, let go from a bent shape. speed: of one end, rad/s;
+/// null: it turns freely.
 struct Released {
   tests::Rotor rotor;
   std::unique_ptr<whirl::system::System> system;
   whirl::system::State start;
-  explicit Released(int elements) {
+  explicit Released(int elements, const LawPtr& speed = nullptr) {
     rotor.add_shaft(tests::cylinder(0.02, 2.1e11, 8e10, 7850), 0.6, elements);
     rotor.add_disk(0.3, 3, 0.0076, 0.015);
     rotor.add_bearing(0, 2e6, 1e6).add_bearing(0.6, 2e6, 1e6);
     rotor.hold_axially(0);
+    if (speed)
+      rotor.b.hold(rotor.node[0], whirl::system::spin_phi, make_angle_of_speed(speed, 0.0));
     system = std::make_unique<whirl::system::System>(rotor.b.finalize());
     start = system->make_state();
     for (std::size_t i = 0; i < rotor.node.size(); ++i) {
@@ -152,6 +156,91 @@ TEST(Observers, SpeedsAtPeaksShareTheirLooks) {
     EXPECT_EQ(all.time, one.time) << i;
     EXPECT_NEAR(all.speed, one.speed, 1e-7 * one.speed) << i;
     EXPECT_GT(all.speed, 90.0);
+  }
+}
+
+namespace {
+
+/// Looks at single nodes are those at whole states, to the last bit, and leave the states alone.
+struct ComparedLooks final : analysis::Observer {
+  explicit ComparedLooks(Index n) : node(n) {}
+  void step(analysis::StepAccess& s) override {
+    const VecX end = s.end().q();
+    for (int k = 0; k <= 4; ++k) {
+      const double t = k == 4 ? s.t1() : s.t0() + 0.25 * k * (s.t1() - s.t0());
+      const analysis::Snapshot& before = s.end();
+      const analysis::StepAccess::Angle angle = s.angle(t, node);
+      const double spin = s.spin(t, node);
+      EXPECT_EQ(before.t(), s.t1());
+      EXPECT_TRUE(before.q() == end);
+      EXPECT_EQ(before.node(node).phi, end[6 * node + whirl::system::spin_phi]);
+      const analysis::Snapshot& whole = s.at(t);
+      EXPECT_EQ(angle.phi, whole.total_phi(node));
+      EXPECT_EQ(angle.rate, whole.node(node).dphi);
+      EXPECT_EQ(spin, whole.node(node).spin());
+    }
+    ++steps;
+  }
+  Index node;
+  int steps = 0;
+};
+
+/// Counts the whole states that turns ask for, and lets looks at nodes pass.
+struct CountedTurns final : analysis::Observer {
+  struct Access final : analysis::StepAccess {
+    explicit Access(analysis::StepAccess& s) : step(s) {}
+    double t0() const override { return step.t0(); }
+    double t1() const override { return step.t1(); }
+    const analysis::Snapshot& at(double t) override {
+      ++states;
+      return step.at(t);
+    }
+    void displacements(double t, std::span<const analysis::Point> points,
+                       std::vector<Vec2>& out) override {
+      step.displacements(t, points, out);
+    }
+    Angle angle(double t, Index node) override { return step.angle(t, node); }
+    analysis::StepAccess& step;
+    int states = 0;
+  };
+  explicit CountedTurns(std::vector<analysis::Point> points)
+      : turns(std::move(points), 0, 32, [this](const analysis::Turn&) { ++whole; }) {}
+  void begin(const analysis::Snapshot& s) override { turns.begin(s); }
+  void step(analysis::StepAccess& s) override {
+    Access access(s);
+    turns.step(access);
+    most = std::max(most, access.states);
+  }
+  int whole = 0, most = 0;
+  analysis::Revolutions turns;
+};
+
+}  // namespace
+
+TEST(Observers, LooksAtOneNodeAreThoseAtAllOfThem) {
+  for (const LawPtr& speed : {LawPtr(), make_smooth_step(0.0, 0.01, 100.0, 400.0)}) {
+    Released r(6, speed);
+    system::SystemProblem problem(*r.system);
+    ComparedLooks driven(r.rotor.node.front()), middle(r.rotor.node[3]);
+    const auto result =
+        analysis::run_transient(problem, r.start, options_of(0.01, 1e-3), {&driven, &middle});
+    ASSERT_EQ(result.reason, analysis::StopReason::end_time);
+    EXPECT_GT(driven.steps, 10);
+  }
+}
+
+// The angle of a shaft whose speed is given was once read off states of all nodes, some a sample.
+TEST(Observers, TurnsAskForTheEndOfAStepAlone) {
+  for (const LawPtr& speed : {LawPtr(), make_constant(1000.0)}) {
+    Released r(6, speed);
+    for (const Index n : r.rotor.node)
+      r.start.v[6 * n + whirl::system::spin_phi] = 1000.0;
+    system::SystemProblem problem(*r.system);
+    CountedTurns turns({{r.rotor.node[3], 0.0}, {r.rotor.node[4], 1e-3}});
+    const auto result = analysis::run_transient(problem, r.start, options_of(0.02, 1e-3), {&turns});
+    ASSERT_EQ(result.reason, analysis::StopReason::end_time);
+    EXPECT_GE(turns.whole, 2);
+    EXPECT_EQ(turns.most, 1);
   }
 }
 

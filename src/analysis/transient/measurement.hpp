@@ -68,6 +68,7 @@ struct Measurement {
 struct Point {
   Index node = 0;
   double offset = 0;
+  bool operator==(const Point&) const = default;
 };
 Vec3 displacement(const Snapshot& s, const Point& p);  ///< of the section's centre, global axes, m
 Vec3 velocity(const Snapshot& s, const Point& p);

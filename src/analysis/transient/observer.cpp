@@ -266,9 +266,9 @@ double PeakTracker::vertex_in(double a, double b, double x, std::size_t point) c
 
 double PeakTracker::spin_at(StepAccess& s, double k) {
   if (points_.size() <= static_cast<std::size_t>(spins))  // a state a peak costs no more
-    return s.at(time_of(s, k)).node(reference_).spin();
+    return s.spin(time_of(s, k), reference_);
   const auto look_at = [&](std::size_t i) {
-    spin_[i] = s.at(time_of(s, 2.0 * static_cast<double>(i))).node(reference_).spin();
+    spin_[i] = s.spin(time_of(s, 2.0 * static_cast<double>(i)), reference_);
   };
   if (!spin_known_) {
     for (const std::size_t i : {0u, 2u, 4u})

@@ -30,8 +30,17 @@ class StepAccess {
   virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     lateral(at(t), points, out);
   }
-  /// Angle of a node with its whole turns, rad, as at(t) says, and cheaper in the same way.
-  virtual double total_phi(double t, Index node) { return at(t).total_phi(node); }
+  /// How a node turns about its axis: the angle with its whole turns, rad, and its rate, rad/s.
+  struct Angle {
+    double phi = 0, rate = 0;
+  };
+  /// As at(t) says, and cheaper in the same way.
+  virtual Angle angle(double t, Index node) {
+    const Snapshot& s = at(t);
+    return {s.total_phi(node), s.node(node).dphi};
+  }
+  /// Spin of a node, rad/s, in the same way.
+  virtual double spin(double t, Index node) { return at(t).node(node).spin(); }
   /// Power supplied and dissipated at t, as at(t).exchange() says, and cheaper where few elements do
   /// either. What at() gave before is no longer good.
   virtual time::Problem::Power exchange(double t) { return at(t).exchange(); }

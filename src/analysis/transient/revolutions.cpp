@@ -70,12 +70,12 @@ double Revolutions::time_of(StepAccess& s, double phi) {
   double t = s.t0() + x * h;
   for (int k = 0; k < 6; ++k) {
     t = std::min(t, s.t1());
-    const double error = s.total_phi(t, reference_) - phi;
+    const StepAccess::Angle turned = s.angle(t, reference_);
+    const double error = turned.phi - phi;
     // 1e-6 rad of 2 pi: far below what a turn's filter resolves
     if (std::abs(error) < 1e-6) break;
-    const double rate = s.at(t).node(reference_).dphi;
-    if (rate * change <= 0.0) break;
-    t = std::clamp(t - error / rate, s.t0(), s.t1());
+    if (turned.rate * change <= 0.0) break;
+    t = std::clamp(t - error / turned.rate, s.t0(), s.t1());
   }
   return t;
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -47,6 +48,10 @@ class StepDense final : public StepAccess {
         q_(p.size()),
         v_(p.size()),
         a_(p.size()),
+        some_q_(p.size()),
+        some_v_(p.size()),
+        some_a_(p.size()),
+        of_node_(p.system().make_workspace()),
         fixed_(at_(p.size()), 0) {
     for (const system::Hold& h : p.system().holds())
       if (!h.law) fixed_[at_(h.unknown)] = 1;
@@ -92,14 +97,21 @@ class StepDense final : public StepAccess {
     if (!alone(t, points, out)) lateral(at(t), points, out);
   }
 
-  double total_phi(double t, Index node) override {
-    const system::Frames& frames = snapshot_.frames();
-    if (frames.moved() || !snapshot_.system().followers().empty()) return at(t).total_phi(node);
+  Angle angle(double t, Index node) override {
     const Index unknown = 6 * node + system::spin_phi;
-    Vector<1> phi;
-    if (!integrator_.interpolate_entries(std::min(t, t1_), std::span(&unknown, 1), phi))
-      return at(t).total_phi(node);
-    return phi[0] + two_pi * frames.turns[at_(snapshot_.system().node(node).line)];
+    if (!apart() || !interpolate_some(t, std::span(&unknown, 1))) return StepAccess::angle(t, node);
+    const double turns = snapshot_.frames().turns[at_(snapshot_.system().node(node).line)];
+    return {some_q_[unknown] + two_pi * turns, some_v_[unknown]};
+  }
+  double spin(double t, Index node) override {
+    if (t >= t1_ || !apart()) return StepAccess::spin(t, node);
+    const std::array<Index, 6> own{6 * node,     6 * node + 1, 6 * node + 2,
+                                   6 * node + 3, 6 * node + 4, 6 * node + 5};
+    if (!interpolate_some(t, own) ||
+        !problem_.system().evaluate_some(of_node_, problem_.frames, t, some_q_, some_v_, some_a_,
+                                         std::span(&node, 1)))
+      return StepAccess::spin(t, node);
+    return of_node_.nodes[at_(node)].spin();
   }
 
  private:
@@ -117,24 +129,35 @@ class StepDense final : public StepAccess {
                                                  a_);
   }
 
+  /// Nodes can be looked at one by one: none follows others, and their charts are those of the lines.
+  bool apart() const {
+    return !snapshot_.frames().moved() && snapshot_.system().followers().empty();
+  }
+  /// These unknowns, and those held, into some_q_, some_v_, some_a_ (the others mean nothing); false
+  /// where that is not cheaper than all.
+  bool interpolate_some(double t, std::span<const Index> entries) {
+    const double within = std::min(t, t1_);
+    if (integrator_.interpolate_some(within, entries, some_q_, some_v_, some_a_)) return true;
+    if (within != t0_ && within != t1_) return false;
+    integrator_.interpolate(within, some_q_, some_v_, some_a_);
+    return true;
+  }
+
   /// The unknowns of these points alone; false where that is not enough.
   bool alone(double t, std::span<const Point> points, std::vector<Vec2>& out) {
-    if (snapshot_.frames().moved() || !snapshot_.system().followers().empty()) return false;
-    list_entries(points);
-    values_.resize(static_cast<Index>(entries_.size()));
+    if (!apart()) return false;
+    if (!std::equal(points.begin(), points.end(), asked_.begin(), asked_.end()))
+      list_entries(points);
     if (!integrator_.interpolate_entries(std::min(t, t1_), entries_, values_)) return false;
     out.resize(points.size());
-    Index next = 0;
-    const auto value = [&](Index unknown) { return fixed_[at_(unknown)] ? 0.0 : values_[next++]; };
+    const auto value = [&](Index place) { return place < 0 ? 0.0 : values_[place]; };
     rotation::Director d;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Index first = 6 * points[i].node;
-      out[i].x() = value(first + system::uy);
-      out[i].y() = value(first + system::uz);
+      const Places& p = places_[i];
+      out[i].x() = value(p.y);
+      out[i].y() = value(p.z);
       if (points[i].offset == 0.0) continue;
-      Vec2 gamma;
-      gamma.x() = value(first + system::gamma2);
-      gamma.y() = value(first + system::gamma3);
+      const Vec2 gamma(value(p.gamma2), value(p.gamma3));
       rotation::director(gamma, d);
       const Vec3 tilt = snapshot_.frames().axes(points[i].node) * d.t;
       out[i] += points[i].offset * tilt.tail<2>();
@@ -144,27 +167,43 @@ class StepDense final : public StepAccess {
   /// What the points ask the integrator for: y and z, and the tilt of those beside their node, but
   /// what is held at zero.
   void list_entries(std::span<const Point> points) {
+    asked_.assign(points.begin(), points.end());
     entries_.clear();
-    const auto ask = [this](Index unknown) {
-      if (!fixed_[at_(unknown)]) entries_.push_back(unknown);
+    places_.clear();
+    const auto ask = [this](Index unknown) -> Index {
+      if (fixed_[at_(unknown)]) return -1;
+      entries_.push_back(unknown);
+      return static_cast<Index>(entries_.size()) - 1;
     };
     for (const Point& p : points) {
       const Index first = 6 * p.node;
-      ask(first + system::uy);
-      ask(first + system::uz);
+      Places& place = places_.emplace_back();
+      place.y = ask(first + system::uy);
+      place.z = ask(first + system::uz);
       if (p.offset == 0.0) continue;
-      ask(first + system::gamma2);
-      ask(first + system::gamma3);
+      place.gamma2 = ask(first + system::gamma2);
+      place.gamma3 = ask(first + system::gamma3);
     }
+    values_.resize(static_cast<Index>(entries_.size()));
   }
+
+  /// Where the values of a point stand among those asked for; -1: held at zero, or not asked for.
+  struct Places {
+    Index y = -1, z = -1, gamma2 = -1, gamma3 = -1;
+  };
 
   system::SystemProblem& problem_;
   time::Integrator& integrator_;
   std::function<void()> look_;
   Snapshot snapshot_;
-  VecX q_, v_, a_, values_;
+  VecX q_, v_, a_;
+  VecX some_q_, some_v_, some_a_;     ///< of some unknowns, beside what the snapshot is of
+  system::Workspace of_node_;         ///< of a node looked at alone
   std::vector<unsigned char> fixed_;  ///< unknowns held at zero
-  std::vector<Index> entries_;
+  std::vector<Point> asked_;          ///< the points that were asked for last, ..
+  std::vector<Places> places_;        ///< .. where their values stand, ..
+  std::vector<Index> entries_;        ///< .. and of which unknowns these are
+  VecX values_;
   std::vector<Index> exchanging_;  ///< unknowns of System::exchanging_nodes
   double t0_ = 0, t1_ = 0;
   bool at_end_ = false;  ///< the snapshot is the step's end ..
