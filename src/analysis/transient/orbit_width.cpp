@@ -22,6 +22,7 @@ Vertex top_of(const std::array<double, OrbitWidth::looks>& f) {
     for (std::size_t k = n - 1; k >= order; --k)
       c[k] = (c[k] - c[k - 1]) / static_cast<double>(order);
   double x = look.x;
+  const auto better = [&](double p) { return p > look.value ? Vertex{x, p} : look; };
   for (int again = 0; again < 6; ++again) {
     double p = c[n - 1], p1 = 0, p2 = 0;
     for (std::size_t k = n - 1; k-- > 0;) {
@@ -33,6 +34,7 @@ Vertex top_of(const std::array<double, OrbitWidth::looks>& f) {
     if (!(p2 < 0.0)) return look;
     const double next =
         std::clamp(x - p1 / p2, std::max(0.0, look.x - 1.0), std::min(4.0, look.x + 1.0));
+    if (next == x) return better(p);  // it still rises at an end
     const bool met = std::abs(next - x) < 1e-6;
     x = next;
     if (met) break;
@@ -40,7 +42,7 @@ Vertex top_of(const std::array<double, OrbitWidth::looks>& f) {
   double p = c[n - 1];
   for (std::size_t k = n - 1; k-- > 0;)
     p = p * (x - static_cast<double>(k)) + c[k];
-  return p > look.value ? Vertex{x, p} : look;
+  return better(p);
 }
 
 /// Unit vectors of the directions, a row each.
