@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <cstdlib>
 
 namespace whirl {
 namespace {
@@ -135,7 +135,7 @@ std::string readable(double x, int digits) {
   if (std::isinf(x)) return x > 0 ? "∞" : "−∞";
   if (x == 0.0) return "0";
   char b[64];
-  std::snprintf(b, sizeof b, "%.*e", digits - 1, x);
+  *std::to_chars(b, b + sizeof b - 1, x, std::chars_format::scientific, digits - 1).ptr = '\0';
   const int e = std::atoi(std::string_view(b).substr(std::string_view(b).find('e') + 1).data());
   std::string mantissa(b, std::string_view(b).find('e'));
   std::string s;

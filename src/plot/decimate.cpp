@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <array>
 #include <cmath>
-#include <unordered_set>
 
 namespace whirl::plot {
 
@@ -62,19 +61,49 @@ std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<c
   return keep;
 }
 
+namespace {
+
+/// A set of segments from cell to cell.
+class Segments {
+ public:
+  using Key = std::array<std::int32_t, 4>;
+  /// most: that will be inserted.
+  explicit Segments(std::size_t most) {
+    std::size_t places = 16;
+    while (places < 2 * most)
+      places *= 2;
+    keys_.resize(places);
+    used_.resize(places);
+  }
+  /// Whether it is new.
+  bool insert(const Key& key) {
+    std::size_t at = hash(key) & (keys_.size() - 1);
+    for (; used_[at]; at = (at + 1) & (keys_.size() - 1))
+      if (keys_[at] == key) return false;
+    used_[at] = 1;
+    keys_[at] = key;
+    return true;
+  }
+
+ private:
+  static std::size_t hash(const Key& key) {
+    std::uint64_t h = 0x9E3779B97F4A7C15ull;
+    for (const auto v : key) {
+      h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull;
+      h ^= h >> 29;
+    }
+    return h;
+  }
+
+  std::vector<Key> keys_;
+  std::vector<unsigned char> used_;
+};
+
+}  // namespace
+
 std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px,
                                                     std::span<const double> py, double cell) {
-  struct Hash {
-    std::size_t operator()(const std::array<std::int32_t, 4>& k) const {
-      std::uint64_t h = 0x9E3779B97F4A7C15ull;
-      for (const auto v : k) {
-        h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull;
-        h ^= h >> 29;
-      }
-      return h;
-    }
-  };
-  std::unordered_set<std::array<std::int32_t, 4>, Hash> drawn;
+  Segments drawn(px.size());
   std::vector<std::vector<std::size_t>> runs;
   const auto grid = [&](double v) {
     return static_cast<std::int32_t>(std::lround(std::clamp(v / cell, -1e8, 1e8)));
@@ -100,7 +129,7 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px,
     // The same segment backwards looks the same.
     std::array<std::int32_t, 4> key{gx, gy, hx, hy};
     if (std::pair(hx, hy) < std::pair(gx, gy)) key = {hx, hy, gx, gy};
-    if (drawn.insert(key).second) {
+    if (drawn.insert(key)) {
       if (!joined) runs.push_back({from});
       runs.back().push_back(i);
       joined = true;

@@ -14,6 +14,7 @@ namespace {
 /// line up. The height is shared among the frames, not the cells: what margins take is taken
 /// first.
 struct Grid {
+  explicit Grid(const std::vector<DataScales>& of) : data(of) {}
   std::size_t columns = 1, rows = 0;
   double width = 0, total = 0;  ///< of the drawing
   double cell_w = 0;
@@ -21,6 +22,7 @@ struct Grid {
   std::vector<double> row_top, row_bottom;  ///< margins of each row
   std::vector<Margins> column;              ///< left and right margins of each column
   std::vector<CartesianFlags> flags;        ///< of each of the axes
+  const std::vector<DataScales>& data;      ///< of each of the axes
 };
 
 /// Rows, columns, and the share of each row.
@@ -45,7 +47,7 @@ void add_margins(Grid& g, const Figure& figure, double height) {
   for (std::size_t i = 0; i < figure.axes.size(); ++i) {
     const Axes& a = figure.axes[i];
     if (a.kind != AxesKind::cartesian) continue;
-    const Margins m = cartesian_margins(a, g.cell_w, height * a.weight, g.flags[i]);
+    const Margins m = cartesian_margins(a, g.data[i], g.cell_w, height * a.weight, g.flags[i]);
     Margins& column = g.column[i % g.columns];
     column.left = std::max(column.left, m.left);
     column.right = std::max(column.right, m.right);
@@ -62,7 +64,7 @@ void widen_left(Grid& g, const Figure& figure) {
       Margins& column = g.column[i % g.columns];
       const Box frame{column.left, 0, g.cell_w - column.left - column.right,
                       g.height[i / g.columns]};
-      column.left = std::max(column.left, left_margin(figure.axes[i], frame));
+      column.left = std::max(column.left, left_margin(figure.axes[i], g.data[i], frame));
     }
 }
 
@@ -74,7 +76,7 @@ void add_notes(Grid& g, const Figure& figure) {
     const Margins& m = g.column[i % g.columns];
     const Box frame{m.left, 0, g.cell_w - m.left - m.right, g.height[i / g.columns]};
     CartesianFlags& f = g.flags[i];
-    f.notes = plan_notes(figure.axes[i], frame);
+    f.notes = plan_notes(figure.axes[i], g.data[i], frame);
     double& key = keys[i / g.columns];
     key = std::max(key, key_height(f.notes, f.legend_width > 0 ? f.legend_width : frame.w));
   }
@@ -84,8 +86,8 @@ void add_notes(Grid& g, const Figure& figure) {
   }
 }
 
-Grid lay_out(const Figure& figure, double top) {
-  Grid g;
+Grid lay_out(const Figure& figure, const std::vector<DataScales>& data, double top) {
+  Grid g(data);
   g.columns = static_cast<std::size_t>(std::max(1, figure.columns));
   g.width = figure.width;
   g.total = figure.height;
@@ -118,9 +120,9 @@ double narrow_height(const Axes& a, double width, double wide_width, double wide
 }
 
 /// All axes below one another, as high as they need to be.
-Grid lay_out_narrow(const Figure& figure, double top) {
-  const Grid wide = lay_out(figure, top);
-  Grid g;
+Grid lay_out_narrow(const Figure& figure, const std::vector<DataScales>& data, double top) {
+  const Grid wide = lay_out(figure, data, top);
+  Grid g(data);
   g.width = narrow_width;
   begin_grid(g, figure);
   for (std::size_t i = 0; i < figure.axes.size(); ++i) {
@@ -150,8 +152,8 @@ void draw_axes(Canvas& c, const Grid& g, std::size_t i, double y) {
   const Margins& m = g.column[k];
   switch (a.kind) {
     case AxesKind::cartesian:
-      draw_cartesian(c, a, {x + m.left, y + g.row_top[r], g.cell_w - m.left - m.right, h},
-                     g.flags[i]);
+      draw_cartesian(c, a, g.data[i],
+                     {x + m.left, y + g.row_top[r], g.cell_w - m.left - m.right, h}, g.flags[i]);
       break;
     case AxesKind::polar: draw_polar(c, a, cell); break;
     case AxesKind::space: draw_space(c, a, cell); break;
@@ -209,7 +211,7 @@ std::string without_colors(const std::string& svg) {
 
 std::string draw(Canvas& c) {
   double y = head_height(c);
-  const Grid g = c.narrow ? lay_out_narrow(c.figure, y) : lay_out(c.figure, y);
+  const Grid g = c.narrow ? lay_out_narrow(c.figure, *c.data, y) : lay_out(c.figure, *c.data, y);
   draw_head(c, g);
   for (std::size_t r = 0; r < g.rows; ++r) {
     for (std::size_t i = r * g.columns; i < std::min((r + 1) * g.columns, c.figure.axes.size());
@@ -221,21 +223,33 @@ std::string draw(Canvas& c) {
   return c.options.standalone ? std::move(c.out) : without_colors(c.out);
 }
 
+std::vector<DataScales> scales_of(const Figure& figure) {
+  std::vector<DataScales> all;
+  for (const Axes& a : figure.axes)
+    all.push_back(a.kind == AxesKind::cartesian ? data_range(a) : DataScales{});
+  return all;
+}
+
 }  // namespace
 
 std::string render_svg(const Figure& figure, const SvgOptions& options) {
+  const std::vector<DataScales> data = scales_of(figure);
   Canvas c{{}, figure, options, safe_name(options.id.empty() ? figure.name : options.id)};
+  c.data = &data;
   return draw(c);
 }
 
 SvgPair render_for_page(const Figure& figure, const SvgOptions& options) {
   const std::string id = safe_name(options.id.empty() ? figure.name : options.id);
+  const std::vector<DataScales> data = scales_of(figure);
   std::vector<DrawnPlot> drawn;
   Canvas wide{{}, figure, options, id + "_wide", &drawn};
+  wide.data = &data;
   SvgPair out;
   out.wide = draw(wide);
   Canvas narrow{{}, figure, options, id + "_narrow", &drawn, true};
   narrow.ids = wide.ids;
+  narrow.data = &data;
   out.narrow = draw(narrow);
   return out;
 }

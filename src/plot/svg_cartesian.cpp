@@ -106,7 +106,8 @@ void make_room(Scale& s, double band, double height) {
     s.hi += more * (s.hi - s.lo);
 }
 
-void place(Prepared& p, const Axes& a, const Box& b) {
+Prepared place(const DataScales& data, const Axes& a, const Box& b) {
+  Prepared p{data.x, data.y, data.right, {}, {}, {}};
   p.x.p0 = b.x;
   p.x.p1 = b.right();
   p.y.p0 = p.r.p0 = b.bottom();
@@ -126,6 +127,7 @@ void place(Prepared& p, const Axes& a, const Box& b) {
   p.tx = axis_ticks(a.x, p.x, b.w, a.equal_aspect ? 68 : 90);
   p.ty = axis_ticks(a.y, p.y, b.h, a.equal_aspect ? 68 : 48);
   if (has_right(a)) p.tr = axis_ticks(a.right, p.r, b.h, 48);
+  return p;
 }
 
 /// Points of the curves about 6 px apart, of long ones as many as tell where they are.
@@ -287,7 +289,7 @@ void add_bodies(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
 
 }  // namespace
 
-void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
+DataScales data_range(const Axes& a) {
   Range rx, ry, rr;
   rx.log = a.x.logarithmic;
   ry.log = a.y.logarithmic;
@@ -317,9 +319,11 @@ void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
     ry.add(h.y1);
   }
   // Histories run from edge to edge; clouds, loops and drawings get air.
-  finish(rx, a.x, loose ? 0.04 : 0.0, x);
-  finish(ry, a.y, a.heat.empty() ? 0.06 : 0.0, y);
-  finish(rr, a.right, 0.06, right);
+  DataScales out;
+  finish(rx, a.x, loose ? 0.04 : 0.0, out.x);
+  finish(ry, a.y, a.heat.empty() ? 0.06 : 0.0, out.y);
+  finish(rr, a.right, 0.06, out.right);
+  return out;
 }
 
 namespace {
@@ -339,11 +343,9 @@ Margins margins_about(const Axes& a, const Prepared& p, const CartesianFlags& f)
 
 }  // namespace
 
-Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f) {
-  Prepared p;
-  data_range(a, p.x, p.y, p.r);
-  const Prepared data = p;
-  place(p, a, {0, 0, std::max(50.0, width - 90), std::max(40.0, height - 60)});
+Margins cartesian_margins(const Axes& a, const DataScales& data, double width, double height,
+                          CartesianFlags& f) {
+  Prepared p = place(data, a, {0, 0, std::max(50.0, width - 90), std::max(40.0, height - 60)});
   const Margins first = margins_about(a, p, f);
   const auto entries = legend_entries(a, resolve_colors(a));
   const Box size = legend_size_of(entries, f.legend_width);
@@ -356,9 +358,8 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
     return Box{m.left, m.top, std::max(50.0, width - m.left - m.right - legend),
                std::max(40.0, height - m.top - m.bottom)};
   };
-  p = data;
   const Box frame = frame_beside(first, 0);
-  place(p, a, frame);
+  p = place(data, a, frame);
   std::vector<Point> seen;
   look_over(a, p, seen);
   add_bodies(a, p, seen);
@@ -368,30 +369,24 @@ Margins cartesian_margins(const Axes& a, double width, double height, CartesianF
   f.legend_outside =
       entries.size() > 8 || size.h > 0.6 * height || legend_hides(entries, frame, seen, names);
   const double legend = f.legend_outside ? size.w + 6 : 0.0;
-  p = data;
-  place(p, a, frame_beside(first, legend));
+  p = place(data, a, frame_beside(first, legend));
   Margins m = margins_about(a, p, f);
   m.left = std::max(m.left, first.left);
   m.right = std::max(m.right, first.right) + legend;
   return m;
 }
 
-NotePlan plan_notes(const Axes& a, const Box& frame) {
+NotePlan plan_notes(const Axes& a, const DataScales& data, const Box& frame) {
   if (a.notes.empty() && a.rules.empty()) return {};
-  Prepared p;
-  data_range(a, p.x, p.y, p.r);
-  place(p, a, frame);
+  const Prepared p = place(data, a, frame);
   std::vector<Point> seen;
   look_over(a, p, seen);
   add_bodies(a, p, seen);
   return place_notes(a, p, frame, seen);
 }
 
-double left_margin(const Axes& a, const Box& frame) {
-  Prepared p;
-  data_range(a, p.x, p.y, p.r);
-  place(p, a, frame);
-  return margins_about(a, p, {}).left;
+double left_margin(const Axes& a, const DataScales& data, const Box& frame) {
+  return margins_about(a, place(data, a, frame), {}).left;
 }
 
 namespace {
@@ -440,11 +435,10 @@ void draw_below(Canvas& c, const std::vector<LegendEntry>& entries, const Box& b
 
 }  // namespace
 
-void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags& f) {
+void draw_cartesian(Canvas& c, const Axes& a, const DataScales& data, const Box& b,
+                    const CartesianFlags& f) {
   const Colors k = resolve_colors(a);
-  Prepared p;
-  data_range(a, p.x, p.y, p.r);
-  place(p, a, b);
+  const Prepared p = place(data, a, b);
   const bool right = has_right(a);
   const std::string clip = begin_cartesian(c, a, p, b, f);
   draw_grid(c, p, b);
@@ -454,10 +448,14 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   const auto entries = legend_entries(a, k);
   c.add("<g clip-path=\"url(#" + clip + ")\">");
   PlotGroup plot(c, p.x, p.y, right ? p.r : p.y);
-  if (!a.heat.empty()) draw_heat(c, a.heat.front(), p);
-  draw_bars_and_patches(c, a, k, p);
-  draw_rules(c, a, p, b);
-  draw_series(c, a, k, p, seen, pins);
+  // a legend below the frame hides nothing: what is seen is not asked for
+  const bool again = plot.repeats() && f.legend_width > 0;
+  if (!again) {
+    if (!a.heat.empty()) draw_heat(c, a.heat.front(), p);
+    draw_bars_and_patches(c, a, k, p);
+    draw_rules(c, a, p, b);
+  }
+  draw_series(c, a, k, p, seen, pins, again);
   plot.end();
   c.add("<g class=\"pins\">\n");
   for (const auto& job : pins)

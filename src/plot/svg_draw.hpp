@@ -44,6 +44,11 @@ struct Segment {
   double x0, y0, x1, y1;
 };
 
+/// Ranges of the data of some axes, with margins, before they have a frame.
+struct DataScales {
+  Scale x, y, right;
+};
+
 struct Canvas {
   std::string out;
   const Figure& figure;
@@ -53,6 +58,7 @@ struct Canvas {
   bool narrow = false;              ///< the second of two
   std::size_t plots = 0;            ///< of `drawn`, met so far
   int ids = 0;
+  const std::vector<DataScales>* data{};  ///< of each of the axes; whole histories are read once
   std::string id() {
     return (options.marks.empty() ? prefix : options.marks) + "-" + std::to_string(++ids);
   }
@@ -75,6 +81,8 @@ class PlotGroup {
  public:
   /// right: y where there is no right axis.
   PlotGroup(Canvas& c, const Scale& x, const Scale& y, const Scale& right);
+  /// What is drawn from now on is left out again.
+  bool repeats() const { return !repeated_.empty(); }
   void end();
 
  private:
@@ -136,8 +144,8 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
                  const std::vector<Point>& seen, const std::vector<Box>& taken, const Box& outside,
                  double width = 0);
 
-/// Range of cartesian or polar data, with margins; what the axis fixes stays.
-void data_range(const Axes& a, Scale& x, Scale& y, Scale& right);
+/// Range of cartesian data, with margins; what the axis fixes stays.
+DataScales data_range(const Axes& a);
 
 /// Ticks about `spacing` px apart on an axis of `length` px.
 Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing);
@@ -157,8 +165,9 @@ struct PinJob {
 };
 void draw_heat(Canvas& c, const HeatMap& h, const Prepared& p);
 void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar);
+/// pins_only: the curves are not drawn, nor added to what is seen.
 void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
-                 std::vector<Point>& seen, std::vector<PinJob>& pins);
+                 std::vector<Point>& seen, std::vector<PinJob>& pins, bool pins_only);
 void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prepared& p);
 /// Where the name of a rule stands; an empty box of one that has none or is not in sight. Below the
 /// fourth row of names the others are numbers, and stand in the key.
@@ -208,13 +217,15 @@ struct CartesianFlags {
 };
 inline constexpr double narrow_width = 360;  ///< px, of the drawing for telephones
 inline constexpr double narrow_legend_width = 352;
-/// Also decides where the legend stands.
-Margins cartesian_margins(const Axes& a, double width, double height, CartesianFlags& f);
+/// Also decides where the legend stands. data: data_range() of the axes, here and below.
+Margins cartesian_margins(const Axes& a, const DataScales& data, double width, double height,
+                          CartesianFlags& f);
 /// Of a frame that stands.
-NotePlan plan_notes(const Axes& a, const Box& frame);
+NotePlan plan_notes(const Axes& a, const DataScales& data, const Box& frame);
 /// Of a frame that stands: its ticks may have wider labels than those reckoned with.
-double left_margin(const Axes& a, const Box& frame);
-void draw_cartesian(Canvas& c, const Axes& a, const Box& frame, const CartesianFlags& f);
+double left_margin(const Axes& a, const DataScales& data, const Box& frame);
+void draw_cartesian(Canvas& c, const Axes& a, const DataScales& data, const Box& frame,
+                    const CartesianFlags& f);
 void draw_polar(Canvas& c, const Axes& a, const Box& cell);
 void draw_space(Canvas& c, const Axes& a, const Box& cell);
 

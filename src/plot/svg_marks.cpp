@@ -164,9 +164,10 @@ void from_left_to_right(std::vector<double>& px, std::vector<double>& py) {
 }  // namespace
 
 void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
-                 std::vector<Point>& seen, std::vector<PinJob>& pins) {
+                 std::vector<Point>& seen, std::vector<PinJob>& pins, bool pins_only) {
   for (std::size_t i = 0; i < a.series.size(); ++i) {
     const Series& s = a.series[i];
+    if (pins_only && s.style.marker == Marker::none) continue;
     const Scale& ys = s.right_axis ? p.r : p.y;
     std::vector<double> px(s.x.size()), py(s.x.size());
     for (std::size_t j = 0; j < s.x.size(); ++j) {
@@ -175,7 +176,7 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
     }
     const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
     if (!keep) from_left_to_right(px, py);
-    if (s.style.width > 0) {
+    if (!pins_only && s.style.width > 0) {
       const std::string d = path_of(px, py, keep, is_increasing(px), c.options, &seen);
       c.add("<path data-s=\"" + std::to_string(i) + "\"" +
             (s.right_axis ? " data-right=\"1\"" : ""));
@@ -191,7 +192,7 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
       c.add(" stroke-linejoin=\"round\"" +
             std::string(s.style.dash == Dash::solid ? " stroke-linecap=\"round\"" : "") + " d=\"" +
             d + "\"/>\n");
-    } else {
+    } else if (!pins_only) {
       for (std::size_t j = 0; j < px.size(); j += 1 + px.size() / 3000)
         if (!std::isnan(px[j]) && !std::isnan(py[j])) seen.push_back({px[j], py[j]});
     }
@@ -292,21 +293,34 @@ bool inside(const Box& t, const Box& frame) {
          t.bottom() <= frame.bottom() - 2;
 }
 
-/// What a text would hide: other texts above all, then the frame's edge, then curves.
+/// What a text would hide: other texts above all, then the frame's edge, then curves. No more is
+/// counted where that and `beside` reach `most`.
 double hidden_by(const Box& t, const Box& frame, const std::vector<Box>& taken,
-                 const std::vector<Point>& seen) {
+                 const std::vector<Point>& seen, double beside = 0, double most = infinity) {
   double cost = inside(t, frame) ? 0 : 20;
   for (const Box& o : taken)
     cost += t.overlaps(o) ? 10 : 0;
-  for (const Point& q : seen)
+  for (const Point& q : seen) {
+    if (beside + cost >= most) break;
     cost +=
         q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12 : 0;
+  }
   return cost;
+}
+
+/// Those that a text within so many px of a point may hide, in their order.
+std::vector<Point> near(const Point& p, double w, double reach, const std::vector<Point>& seen) {
+  const double dx = reach + w + 3, dy = 1.2 * reach + 14 + 3;
+  std::vector<Point> out;
+  for (const Point& q : seen)
+    if (std::abs(q.x - p.x) < dx && std::abs(q.y - p.y) < dy) out.push_back(q);
+  return out;
 }
 
 /// Beside a point, where it hides least, no further away than told.
 Box place_beside(const Point& p, double w, const Box& frame, const std::vector<Box>& taken,
-                 const std::vector<Point>& seen, double furthest = 130) {
+                 const std::vector<Point>& all_seen, double furthest = 130) {
+  const std::vector<Point> seen = near(p, w, std::min(furthest, 130.0), all_seen);
   Box at;
   double best = infinity;
   constexpr std::array<std::pair<double, double>, 10> directions{{{1.0, -1.0},
@@ -320,13 +334,13 @@ Box place_beside(const Point& p, double w, const Box& frame, const std::vector<B
                                                                   {1.0, 0.4},
                                                                   {-1.0, 0.4}}};
   for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0, 125.0}) {
-    if (reach > furthest) break;
+    if (reach > furthest || reach * 0.02 >= best) break;  // further away nothing is better
     for (const auto& [sx, sy] : directions) {
       const Box t{sx > 0   ? p.x + reach
                   : sx < 0 ? p.x - reach - w
                            : p.x - w / 2,
                   p.y + sy * reach - 7, w, 14};
-      const double cost = reach * 0.02 + hidden_by(t, frame, taken, seen);
+      const double cost = reach * 0.02 + hidden_by(t, frame, taken, seen, reach * 0.02, best);
       if (cost >= best) continue;
       best = cost;
       at = t;
