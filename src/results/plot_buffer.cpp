@@ -1,7 +1,10 @@
 #include <results/plot_buffer.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace whirl::results {
 
@@ -69,12 +72,12 @@ void PlotBuffer::halve() {
 }
 
 void PlotBuffer::save(OutArchive& out) const {
+  // tens of megabytes in a long run: as they stand, and moved once
+  const std::string_view extremes(reinterpret_cast<const char*>(data_.data()),
+                                  data_.size() * sizeof(Extreme));
+  out.reserve(out.data().size() + extremes.size() + 8 * kept_.size() + 64);
   for (std::size_t n : {stride_, rows_, filled_, keep_stride_})
     out.put_count(n);
-  std::vector<double> extremes;
-  extremes.reserve(4 * data_.size());
-  for (const Extreme& e : data_)
-    extremes.insert(extremes.end(), {e.lo, e.hi, e.t_lo, e.t_hi});
   out.put(extremes);
   out.put(kept_);
 }
@@ -82,15 +85,15 @@ void PlotBuffer::save(OutArchive& out) const {
 void PlotBuffer::restore(InArchive& in) {
   for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_})
     *n = in.count();
-  const std::vector<double> extremes = in.numbers();
+  const std::string extremes = in.text();
   kept_ = in.numbers();
   const std::size_t width = channels_ + 1;
-  if (extremes.size() % 4 != 0 || extremes.size() > 4 * capacity_ * channels_ ||
-      kept_.size() % width != 0 || kept_.size() > rows_capacity_ * width)
+  if (extremes.size() % sizeof(Extreme) != 0 ||
+      extremes.size() > sizeof(Extreme) * capacity_ * channels_ || kept_.size() % width != 0 ||
+      kept_.size() > rows_capacity_ * width)
     throw std::invalid_argument("plot buffer of another run");
-  data_.clear();
-  for (std::size_t i = 0; i < extremes.size(); i += 4)
-    data_.push_back({extremes[i], extremes[i + 1], extremes[i + 2], extremes[i + 3]});
+  data_.resize(extremes.size() / sizeof(Extreme));
+  if (!data_.empty()) std::memcpy(data_.data(), extremes.data(), extremes.size());
 }
 
 PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
