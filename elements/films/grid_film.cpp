@@ -85,6 +85,7 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
     : start_(start),
       arc_(arc),
       ratio_(ratio),
+      has_recesses_(!recesses.empty()),
       round_(round) {
   WHIRL_EXPECTS(arc > 0.0 && arc <= two_pi * (1 + 1e-12) && ratio > 0.0);
   WHIRL_EXPECTS(columns >= 8 && columns <= most_columns && rows >= 2 && rows <= most_even_rows);
@@ -467,21 +468,85 @@ void GridPad::Solver::solve_film() {
   solve(P_.data());
 }
 
-/// Film of one profile along the axis, to begin with: it takes a few passes where full films would take
-/// twenty.
-void GridPad::Solver::guess_film() {
+namespace {
+
+/// One profile of the pressure along the axis in each column, positive: Gauss along the arc, a circle
+/// opened at `first`, and policy iteration.
+class ProfileFilm {
+ public:
   struct Column {
     double source = 0.0, across = 0.0, p = 0.0, pivot = 0.0;
     bool film = true;
   };
-  std::array<Column, most_columns> columns;
-  std::array<double, most_columns + 1> along{};
+  std::array<Column, GridPad::most_columns> columns;
+  std::array<double, GridPad::most_columns + 1> along{};  ///< between a column and the one before
+
+  explicit ProfileFilm(std::size_t number) : n_(number) {}
+  /// Where most is swallowed.
+  void open_circle() {
+    along[n_] = along[0];
+    for (std::size_t i = 1; i < n_; ++i)
+      if (columns[i].source < columns[first_].source) first_ = i;
+  }
+  void settle() {
+    constexpr int most_passes = 60;
+    for (int pass = 0; pass < most_passes; ++pass) {
+      solve();
+      if (!take_film()) return;
+    }
+  }
+
+ private:
+  std::size_t number_of(std::size_t step) const { return (first_ + step) % n_; }
+  void solve() {
+    double pivot = infinity, carried = 0.0;  // of the column before
+    for (std::size_t step = 0; step < n_; ++step) {
+      const std::size_t i = number_of(step);
+      Column& own = columns[i];
+      const double share = along[i] / pivot;
+      own.pivot = along[i] + along[i + 1] + own.across - share * along[i];
+      own.p = own.source + share * carried;
+      pivot = own.film ? own.pivot : infinity;
+      carried = own.film ? own.p : 0.0;
+    }
+    double behind = 0.0;
+    for (std::size_t step = n_; step-- > 0;) {
+      const std::size_t i = number_of(step);
+      Column& own = columns[i];
+      own.p = own.film ? (own.p + along[i + 1] * behind) / own.pivot : 0.0;
+      behind = own.p;
+    }
+  }
+  bool take_film() {
+    bool changed = false;
+    double before = 0.0;
+    for (std::size_t step = 0; step < n_; ++step) {
+      const std::size_t i = number_of(step);
+      const double next = step + 1 < n_ ? columns[number_of(step + 1)].p : 0.0;
+      Column& own = columns[i];
+      const bool now =
+          own.film ? own.p > 0.0 : own.source + along[i] * before + along[i + 1] * next > 0.0;
+      before = own.p;
+      changed = changed || now != own.film;
+      own.film = now;
+    }
+    return changed;
+  }
+
+  std::size_t n_, first_ = 0;
+};
+
+}  // namespace
+
+/// Film of one profile along the axis, to begin with: it takes a few passes where full films would take
+/// twenty. (Not beside recesses, whose films it leaves too small.)
+void GridPad::Solver::guess_film() {
+  ProfileFilm guess(n_);
   const auto profile = [&](std::size_t k, std::size_t j) {
     return open_[k] ? 0.0 : pad_.rows_[j].profile;
   };
   for (std::size_t i = 0; i < n_; ++i) {
-    Column& own = columns[i];
-    own = {};
+    ProfileFilm::Column& own = guess.columns[i];
     for (std::size_t j = 0; j < m_; ++j) {
       const std::size_t k = at(i, j);
       own.source += profile(k, j) * (along_in_[k] + across_in_[k]);
@@ -497,57 +562,15 @@ void GridPad::Solver::guess_film() {
     for (std::size_t j = 0; j < m_; ++j) {
       const double before = l == groove ? 0.0 : profile(at(l, j), j),
                    behind = r == groove ? 0.0 : profile(at(r, j), j);
-      along[f] += along_[f * m_ + j] * std::max(before * before, behind * behind);
+      guess.along[f] += along_[f * m_ + j] * std::max(before * before, behind * behind);
     }
   }
-  if (pad_.round_) along[n_] = along[0];
-  // a circle is opened where most is swallowed
-  std::size_t first = 0;
-  if (pad_.round_)
-    for (std::size_t i = 1; i < n_; ++i)
-      if (columns[i].source < columns[first].source) first = i;
-  constexpr int most_passes = 60;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    double pivot = infinity, carried = 0.0;  // of the column before
-    for (std::size_t step = 0; step < n_; ++step) {
-      const std::size_t i = (first + step) % n_;
-      Column& own = columns[i];
-      if (!own.film) {
-        pivot = infinity;
-        carried = 0.0;
-        continue;
-      }
-      const double share = along[i] / pivot;
-      own.pivot = along[i] + along[i + 1] + own.across - share * along[i];
-      own.p = own.source + share * carried;
-      pivot = own.pivot;
-      carried = own.p;
-    }
-    double behind = 0.0;
-    for (std::size_t step = n_; step-- > 0;) {
-      const std::size_t i = (first + step) % n_;
-      Column& own = columns[i];
-      own.p = own.film ? (own.p + along[i + 1] * behind) / own.pivot : 0.0;
-      behind = own.p;
-    }
-    bool changed = false;
-    double before = 0.0;
-    for (std::size_t step = 0; step < n_; ++step) {
-      const std::size_t i = (first + step) % n_;
-      const double next = step + 1 < n_ ? columns[(i + 1) % n_].p : 0.0;
-      Column& own = columns[i];
-      const bool now =
-          own.film ? own.p > 0.0 : own.source + along[i] * before + along[i + 1] * next > 0.0;
-      before = own.p;
-      changed = changed || now != own.film;
-      own.film = now;
-    }
-    if (!changed) break;
-  }
+  if (pad_.round_) guess.open_circle();
+  guess.settle();
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t j = 0; j < m_; ++j) {
       const std::size_t k = at(i, j);
-      film_[k] = columns[i].film && !open_[k] ? 1 : 0;
+      film_[k] = guess.columns[i].film && !open_[k] ? 1 : 0;
       reach_[k] = 1.0;
     }
 }
@@ -567,7 +590,10 @@ void GridPad::Solver::find_film() {
   double size = 0.0;
   for (std::size_t k = 0; k < size_; ++k)
     size = std::max(size, std::abs(along_in_[k] + across_in_[k]));
-  guess_film();
+  if (pad_.has_recesses_)
+    fill_all();
+  else
+    guess_film();
   for (int pass = 0; pass < most_passes; ++pass) {
     if (pass == again) fill_all();
     solve_film();

@@ -148,7 +148,7 @@ class GridPad {
   class Solver;
 
   double start_, arc_, ratio_;
-  bool round_;
+  bool has_recesses_, round_;
   std::size_t bands_ = 1;
   std::vector<Cell> cells_;
   std::vector<Row> rows_;
