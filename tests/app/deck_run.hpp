@@ -142,8 +142,8 @@ struct DeckRun {
     std::ostringstream text;
     text << std::ifstream(folder / deck).rdbuf();
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    for (const std::string& what : differences_from_approved(test->test_suite_name(), text.str(),
-                                                             exit, folder / "r", log))
+    for (const std::string& what :
+         differences_from_approved(test->test_suite_name(), text.str(), exit, folder / "r", log))
       ADD_FAILURE() << "not as approved: " << what
                     << " (where it is meant, tests/approved/update_runs.py approves it)\n"
                     << text.str();
