@@ -84,7 +84,7 @@ class GridPad::Solver {
   double first_reach(std::size_t k, double lacking) const;
   double own(std::size_t i, std::size_t j, Vec3* slope = nullptr) const;
   /// Of its cell that is in balance.
-  double share(std::size_t k) const { return 0.5 * (1.0 + reach_[k]); }
+  double share(std::size_t k) const { return k < side ? 0.5 * (1.0 + reach_[k]) : 1.0; }
   double past_front(std::size_t k) const { return own_[k] * (1.0 - reach_[k]) / reach_[k]; }
   /// (1 - s)/2
   double unmet(std::size_t k) const { return 0.5 * (1.0 - reach_[k]); }
