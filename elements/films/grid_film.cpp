@@ -147,11 +147,14 @@ void GridPad::mark_steps() {
     const std::array<double, 4>& d = depth_[n];
     return end ? beyond(d[2], d[3]) : beyond(d[1], d[0]);
   };
-  for (std::size_t n = bands_; n < open_.size(); ++n) {
-    const double before = depth_at(n - bands_, true), behind = depth_at(n, false);
-    if (std::abs(before - behind) <= 1e-9 * std::max(before, behind)) continue;
-    stepped_[n - bands_] = stepped_[n] = 1;
-  }
+  const auto compare = [&](std::size_t l, std::size_t r) {
+    const double before = depth_at(l, true), behind = depth_at(r, false);
+    if (std::abs(before - behind) > 1e-9 * std::max(before, behind)) stepped_[l] = stepped_[r] = 1;
+  };
+  for (std::size_t n = bands_; n < open_.size(); ++n)
+    compare(n - bands_, n);
+  for (std::size_t g = 0; round_ && g < bands_; ++g)
+    compare(open_.size() - bands_ + g, g);
 }
 
 /// Quadratic elements: a parabola is exact, and what is conducted from node to node is symmetric.
@@ -583,19 +586,20 @@ void GridPad::Solver::fill_all() {
 }
 
 void GridPad::Solver::find_film() {
-  // a film grows by a node a pass, so one that was begun with too little is begun again with all; should
-  // it not settle, it may only shrink from some pass on
+  // a film grows by a node a pass, so one that was guessed too small is begun again with all; should it
+  // not settle, it may only shrink from some pass on
   constexpr int most_passes = 200, again = 12, free_passes = 72;
   constexpr double rounding = 1e-13;  // of the largest source
   double size = 0.0;
   for (std::size_t k = 0; k < size_; ++k)
     size = std::max(size, std::abs(along_in_[k] + across_in_[k]));
-  if (pad_.has_recesses_)
-    fill_all();
-  else
+  const bool guessed = !pad_.has_recesses_;
+  if (guessed)
     guess_film();
+  else
+    fill_all();
   for (int pass = 0; pass < most_passes; ++pass) {
-    if (pass == again) fill_all();
+    if (guessed && pass == again) fill_all();
     solve_film();
     if (take_film(rounding * size, pass < free_passes)) continue;
     for (std::size_t k = 0; k < size_; ++k)
