@@ -55,6 +55,14 @@ void push_components(io::Value& list, const Vec3& v) {
     list.push(x);
 }
 
+/// N, and N m: what is below 1e-14 of the largest force is rounding of springs without load.
+double rounding_of(const std::vector<PlaceLoad>& loads) {
+  double largest_force = 0;
+  for (const PlaceLoad& f : loads)
+    largest_force = std::max(largest_force, f.force.norm());
+  return 1e-14 * largest_force;
+}
+
 void add_supports(const run::Job& job, const std::vector<PlaceLoad>& loads, StaticResults& out,
                   io::Value& summary) {
   out.supports.title = "Supports: force and moment on the shaft";
@@ -65,13 +73,8 @@ void add_supports(const run::Job& job, const std::vector<PlaceLoad>& loads, Stat
                           {"M_x", "N m", "about the place of the support"},
                           {"M_y", "N m", ""},
                           {"M_z", "N m", ""}};
-  // What is below 1e-14 of the largest force is rounding of springs without load.
-  double largest_force = 0;
-  for (const PlaceLoad& f : loads)
-    largest_force = std::max(largest_force, f.force.norm());
-  const auto clean = [&](Vec3 v) {
-    return Vec3((v.array().abs() < 1e-14 * largest_force).select(0.0, v));
-  };
+  const double rounding = rounding_of(loads);
+  const auto clean = [&](Vec3 v) { return Vec3((v.array().abs() < rounding).select(0.0, v)); };
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const std::string& name = job.built.support_forces[i].name;
     const Vec3 v = clean(loads[i].force), m = clean(loads[i].moment);
@@ -119,13 +122,14 @@ void add_joints(const run::Job& job, const system::Workspace& state,
 
 /// Torques of what keeps the speed of shafts that nothing else holds.
 void add_spin_holds(const run::Job& job, std::span<const Index> spin_holds, const VecX& reactions,
-                    StaticResults& out, io::Value& summary) {
+                    double rounding, StaticResults& out, io::Value& summary) {
   for (const Index k : spin_holds) {
     const std::string& line = job.system().line_name(job.system().node(k / 6).line);
-    summary["torque that keeps the speed [N m]"][line] = reactions[k];
-    if (std::abs(reactions[k]) > 0)
+    const double torque = std::abs(reactions[k]) < rounding ? 0.0 : reactions[k];
+    summary["torque that keeps the speed [N m]"][line] = torque;
+    if (torque != 0)
       out.lines.push_back(
-          fmt::format("shaft '{}': torque that keeps its speed {:.5g} N m", line, reactions[k]));
+          fmt::format("shaft '{}': torque that keeps its speed {:.5g} N m", line, torque));
   }
 }
 
@@ -142,7 +146,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step,
   add_magnets(job, state, out, summary);
   add_supports(job, loads.supports, out, summary);
   add_joints(job, state, loads.joints, out, summary);
-  add_spin_holds(job, spin_holds, reactions, out, summary);
+  add_spin_holds(job, spin_holds, reactions, rounding_of(loads.supports), out, summary);
   summary["elastic energy [J]"] = loads.elastic_energy;
   out.points =
       assembly::calc_section_results(job.model, job.mesh, job.built, state, loads.elements);

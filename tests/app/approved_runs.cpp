@@ -64,20 +64,6 @@ std::string without_numbers(const std::string& text, std::vector<double>& number
 
 // ---- tables ----
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
-}
-
 std::optional<double> number_of(const std::string& cell) {
   char* end = nullptr;
   const double x = std::strtod(cell.c_str(), &end);
@@ -97,12 +83,12 @@ Fingerprint of_table(const fs::path& file) {
   std::istringstream in(text_of(file));
   std::string line, words;
   std::getline(in, line);
-  const std::vector<std::string> titles = cells_of(line);
+  const std::vector<std::string> titles = csv_cells(line);
   words = line;
   std::vector<std::vector<double>> columns(titles.size());
   while (std::getline(in, line)) {
     ++out.rows;
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = csv_cells(line);
     for (std::size_t k = 0; k < std::min(cells.size(), columns.size()); ++k) {
       if (is_time(titles[k])) continue;
       if (const std::optional<double> x = number_of(cells[k])) {
@@ -239,6 +225,21 @@ std::map<std::string, std::string> approved_lines(const fs::path& file, const st
 }
 
 }  // namespace
+
+std::vector<std::string> csv_cells(const std::string& line) {
+  std::vector<std::string> cells;
+  bool quoted = false;
+  for (const char c : line) {
+    if (cells.empty()) cells.emplace_back();
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
 
 std::string line_of(const Fingerprint& f) {
   std::string line = fmt::format("{} {:08x} {}", f.file, f.words, f.rows);

@@ -9,6 +9,9 @@
 
 namespace whirl::test {
 
+/// Of a line of a CSV file; a comma within quotes parts nothing.
+std::vector<std::string> csv_cells(const std::string& line);
+
 /// A file of results: its words by their checksum, its numbers such that a difference of 1 is nearly
 /// 1e-4 of them. Columns: mean, a mean weighted by the row, and root mean square, against the largest
 /// number of their unit. Other numbers: by their logarithm (those below 1e-9 are next to nothing).

@@ -36,21 +36,7 @@ struct Columns {
         rows.back().push_back(number(cell));
     }
   }
-  /// Of a line; a comma within quotes parts nothing.
-  static std::vector<std::string> cells_of(const std::string& line) {
-    std::vector<std::string> cells;
-    bool quoted = false;
-    for (const char c : line) {
-      if (cells.empty()) cells.emplace_back();
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        cells.emplace_back();
-      else
-        cells.back() += c;
-    }
-    return cells;
-  }
+  static std::vector<std::string> cells_of(const std::string& line) { return csv_cells(line); }
   static double number(const std::string& cell) {
     char* end = nullptr;
     const double x = std::strtod(cell.c_str(), &end);
