@@ -63,7 +63,7 @@ function(whirl_precompile TARGET HEADER LEVEL)
     add_library(${pch} OBJECT ${CMAKE_BINARY_DIR}/pch/${HEADER}${LEVEL}.cpp)
     target_link_libraries(${pch} PRIVATE whirl_flags Eigen3::Eigen fmt::fmt ${ARGN})
     whirl_optimize(${pch} ${LEVEL})
-    if(HEADER STREQUAL "tests")   # programs are position-independent in another way than libraries
+    if(HEADER MATCHES "^(tests|machines)$")   # programs are position-independent in another way than libraries
       set_target_properties(${pch} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
       target_compile_options(${pch} PRIVATE -fPIE)
     endif()
