@@ -46,7 +46,12 @@ int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu
   double last = infinity;
   for (int k = 1; k <= o.max_iterations; ++k) {
     if (!problem.residual(trial_, trial_mu_, f_)) return -1;
-    if (!problem.factor(trial_, trial_mu_)) return -1;
+    if (!problem.factor(trial_, trial_mu_)) {
+      // on a straight path the prediction may be a point of it, at which K is singular
+      constexpr double rounding = 1e-12;  // of the loads
+      problem.load(trial_, trial_mu_, load_);
+      return f_.norm() <= rounding * mu_weight_ * load_.norm() ? k : -1;
+    }
     a_ = -f_;
     problem.solve(a_);
     double dmu = 0.0;

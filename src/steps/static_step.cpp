@@ -79,6 +79,15 @@ std::vector<std::string> describe_path(const analysis::LoadPathResult& r, io::Va
     b["followed"] = followed;
     v["bifurcations"].push(std::move(b));
   }
+  for (const analysis::Unlocated& u : r.unlocated) {
+    const std::string text = fmt::format(
+        "between load factors {:.6g} and {:.6g} the unstable directions change from {} to {}; "
+        "where "
+        "was not found",
+        u.from, u.to, u.before, u.after);
+    notes.push_back(text);
+    v["not located"].push(text);
+  }
   return notes;
 }
 

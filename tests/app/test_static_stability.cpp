@@ -2,7 +2,10 @@
 // not get there.
 #include "deck_run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 using namespace whirl::test;
 
@@ -360,4 +363,83 @@ TEST(StaticStability, WindowAfterTheEndIsNamed) {
   };
   EXPECT_TRUE(DeckRun(frames("[\"1 s\", \"2 s\"]")).says("no frame would be written"));
   EXPECT_FALSE(DeckRun(frames("[\"0.5 ms\", \"2 s\"]")).says("holds nothing"));
+}
+
+namespace {
+
+/// Rigid bars of 1 m in a row, each on a hinge spring of 100 N m/rad, under an end load of P N.
+std::string bars_on_hinges(int bars, double P) {
+  std::string deck = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[output]
+report = false
+)";
+  for (int k = 0; k < bars; ++k)
+    deck += fmt::format(R"([[shaft]]
+name = "bar{0}"
+rotating = false
+origin = ["{0} m", "0 m", "0 m"]
+[[shaft.section]]
+name = "b{0}"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "d{0}"
+at = "b{0}:end"
+mass = "1 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.1 kg.m^2"
+[[joint]]
+name = "h{0}"
+at = "b{0}:start"
+kind = "hinge"
+axis = [0, 0, 1]
+stiffness = "100 N.m/rad"
+{1}
+)",
+                        k, k == 0 ? "" : fmt::format("to = \"b{}:end\"", k - 1));
+  return deck + fmt::format("[[load]]\nat = \"b{}:end\"\nforce = [\"-{} N\", \"0 N\", \"0 N\"]\n",
+                            bars - 1, P);
+}
+
+constexpr const char* path_and_buckling =
+    "[[step]]\nname = \"st\"\ntype = \"static\"\npath = {}\n[[step]]\nname = \"b\"\ntype = "
+    "\"buckling\"\n";
+
+}  // namespace
+
+// P_cr = k/L = 100 N. Nothing moves before it, and some point of the path or of the search falls on the
+// load at which the tangent is singular.
+TEST(StaticStability, ABarOnAHingeIsLocatedAtAnyLoad) {
+  for (const double P : {160.0, 170.0, 200.0, 250.0, 399.0, 400.0, 401.0, 800.0, 1600.0}) {
+    const DeckRun run(bars_on_hinges(1, P) + path_and_buckling);
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_FALSE(run.says("W09")) << run.log;
+    const Columns c = run.csv("st_critical_points.csv");
+    ASSERT_EQ(c.rows.size(), 1u) << P << run.log;
+    EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], 100.0 / P, 1e-8) << P;
+    EXPECT_NEAR(run.summary("b").at("on the path").at("load factor").number(), 100.0 / P, 1e-8)
+        << P;
+  }
+  const DeckRun branch(bars_on_hinges(1, 400.0) +
+                       "[[step]]\nname = \"st\"\ntype = \"static\"\npath = { branch = 1 }\n");
+  EXPECT_EQ(branch.exit, 0) << branch.log;
+}
+
+// Eigenvalues of [[2, -1], [-1, 1]] k/L are (3 -+ sqrt 5)/2; the load ends on the second, or has the first
+// half way.
+TEST(StaticStability, TwoBarsOnHingesAreLocated) {
+  const double first = 50.0 * (3.0 - std::sqrt(5.0)), second = 50.0 * (3.0 + std::sqrt(5.0));
+  for (const double P : {400.0, 2.0 * first, second}) {
+    const DeckRun run(bars_on_hinges(2, P) + path_and_buckling);
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_FALSE(run.says("W09")) << run.log;
+    const Columns c = run.csv("st_critical_points.csv");
+    ASSERT_EQ(c.rows.size(), P == 400.0 ? 2u : 1u) << P << run.log;
+    EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], first / P, 1e-8) << P;
+    if (P == 400.0) {
+      EXPECT_NEAR(c.rows[1][c.column("load factor [-]")], second / P, 1e-8);
+    }
+  }
 }

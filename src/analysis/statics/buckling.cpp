@@ -292,6 +292,11 @@ PathCheck check_on_path(SteadySystem& running, double Omega, double factor,
     out.found = true;
     out.limit = r.critical.front().limit;
     out.load = r.critical.front().load / full;
+  } else if (!r.unlocated.empty()) {
+    const Unlocated& u = r.unlocated.front();
+    out.ended =
+        fmt::format("loses stability between load factors {:.6g} and {:.6g}; where was not found",
+                    u.from / full, u.to / full);
   } else if (r.end == LoadPathEnd::stopped) {
     out.found = true;  // unstable from the beginning
   } else if (r.end != LoadPathEnd::reached) {

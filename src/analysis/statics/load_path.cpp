@@ -282,11 +282,18 @@ class Follower {
         const double width = high.part - low.part;
         const bool secant = low.mu * high.mu < 0.0 && k % 3 != 2;
         const double inside = secant ? low.mu / (low.mu - high.mu) : 0.5;
-        Probe x = probe(low.part + width * std::clamp(inside, 1e-3, 1.0 - 1e-3));
+        const double part = low.part + width * std::clamp(inside, 1e-3, 1.0 - 1e-3);
+        Probe x = probe(part);
+        // where the tangent is singular no state is found: beside it there is one
+        for (const double aside : {1e-5, -1e-5, 1e-3})
+          if (std::isnan(x.mu)) x = probe(part + aside * width);
         if (std::isnan(x.mu)) break;
         (x.tangent.negative == counted ? low : high) = std::move(x);
       }
-      if (std::isnan(low.mu) && std::isnan(high.mu)) break;
+      if (std::isnan(low.mu) && std::isnan(high.mu)) {
+        out_.unlocated.push_back({kept_load_, end_load, counted, now_.negative});
+        break;
+      }
       leaves = add_bifurcation(low, high, counted, problem);
       counted = high.tangent.negative;
       from = high.part;

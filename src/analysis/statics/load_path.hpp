@@ -47,6 +47,12 @@ struct CriticalPoint {
                    ///< 1; (u, phi, gamma) a node
 };
 
+/// The count of negative directions changes between two loads, and where was not found.
+struct Unlocated {
+  double from = 0, to = 0;
+  Index before = 0, after = 0;
+};
+
 enum class LoadPathEnd { reached, stopped, too_many_points, lost, no_branch };
 
 struct LoadPathResult {
@@ -56,8 +62,9 @@ struct LoadPathResult {
   int points = 0;
   std::string why;                      ///< when lost: node, direction
   std::vector<CriticalPoint> critical;  ///< in the order passed
-  int branched_at = -1;                 ///< which of them the path left on a branch
-  Definiteness tangent;                 ///< at the last point, without its shape
+  std::vector<Unlocated> unlocated;
+  int branched_at = -1;  ///< which of them the path left on a branch
+  Definiteness tangent;  ///< at the last point, without its shape
 };
 
 /// "reached its end at load factor 1 after 41 points", or where it ended instead and why.
