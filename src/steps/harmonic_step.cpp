@@ -187,6 +187,8 @@ class HarmonicRun {
     bool bounded = true;  ///< something damps it
   };
   void find_peaks();
+  /// The ends of the grid, where they meet a resonance that nothing damps.
+  void add_unbounded_ends();
   void list_maxima(std::size_t probe, std::vector<Found>& out) const;
   void find_peak(Found& x) const;
   bool is_bounded(Responder& responder, const Found& x) const;
@@ -320,6 +322,7 @@ void HarmonicRun::solve_grid() {
 
 void HarmonicRun::find_largest() {
   largest_ = largest_twist_ = 0;
+  if (points_.empty()) return;  // all on resonances without bound
   for (std::size_t k = 0; k < points_.size(); ++k)
     for (std::size_t p = 0; p < options_.probes.size(); ++p) {
       if (lateral(points_[k], p) > largest_) {
@@ -540,6 +543,23 @@ void HarmonicRun::find_peaks() {
   for (std::size_t p = 0; p < options_.probes.size(); ++p)
     list_maxima(p, found_);
   run_side_by_side(found_.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found_[k]); });
+  add_unbounded_ends();
+}
+
+void HarmonicRun::add_unbounded_ends() {
+  constexpr double above_its_neighbour = 10.0;
+  const std::size_t last = grid_.size() - 1;
+  for (std::size_t end = 0; end <= last; end += std::max<std::size_t>(last, 1)) {
+    const std::size_t beside = end == 0 ? std::min<std::size_t>(1, last) : last - 1;
+    if (grid_[end] == 0.0) continue;
+    for (std::size_t p = 0; p < options_.probes.size(); ++p) {
+      const double here = size_of(points_[end], p);
+      if (last > 0 && !(here > above_its_neighbour * size_of(points_[beside], p))) continue;
+      Found x{p, end, grid_[end], points_[end]};
+      x.bounded = is_bounded(responder_, x);
+      if (!x.bounded) found_.push_back(std::move(x));
+    }
+  }
 }
 
 void HarmonicRun::drop_unbounded() {

@@ -408,7 +408,7 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   if (!(law.operating[1] > 0)) return {};
   io::Table margins;
   margins.title = "Separation margins (API RP 684)";
-  margins.nan_means = "no half-power point within the speeds";
+  margins.nan_means = "no half-power point within the speeds, or a response without bound";
   const bool several = r.orders.size() > 1;
   margins.columns = {{"probe", "-", ""}};
   if (several) margins.columns.push_back({"order", "-", "of the reference speed: whose unbalance"});
@@ -425,7 +425,8 @@ std::string add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
          analysis::separation_margins(peaks, probes, {law.operating[0], law.operating[1]}, k)) {
       std::vector<io::Table::Cell> row{m.probe};
       if (several) row.emplace_back(r.orders[k]);
-      for (const double x : {to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual})
+      const double factor = std::isfinite(m.amplification) ? m.amplification : nan;
+      for (const double x : {to_rpm(m.speed), factor, 100 * m.required, 100 * m.actual})
         row.emplace_back(x);
       row.emplace_back(std::string(m.critically_damped ? "critically damped"
                                    : m.undetermined    ? "not determined"
@@ -778,13 +779,13 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   add_shapes(s, r, o, shape_speeds(law, peaks),
              largest.amplitude > 0 ? also : std::vector<double>{}, largest);
 
-  s.section.text = largest.amplitude == 0
-                       ? "Nothing turns that is out of balance: the response is zero."
-                       : fmt::format("Steady response to what turns out of balance, {} speeds{}.",
-                                     r.points.size(),
-                                     o.refine_peaks ? ", with more of them where it peaks" : "");
+  const bool still = largest.amplitude == 0 && !r.points.empty();
+  s.section.text = still ? "Nothing turns that is out of balance: the response is zero."
+                         : fmt::format("Steady response to what turns out of balance, {} speeds{}.",
+                                       r.points.size(),
+                                       o.refine_peaks ? ", with more of them where it peaks" : "");
   say_opposed_unbalances(s);
-  if (largest.amplitude == 0) {
+  if (still) {
     Diagnostic d;
     d.code = "W02";
     d.message = fmt::format("step '{}': nothing turns that is out of balance: the response is zero",

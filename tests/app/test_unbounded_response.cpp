@@ -87,6 +87,75 @@ TEST(UnboundedResponse, OfAnUndampedRotorIsSaid) {
   EXPECT_LT(nearest, 1e-6) << critical.log;
 }
 
+namespace {
+
+/// 100 kg on 1e6 N/m: w = 100 rad/s, which points of these grids meet to the last digit.
+std::string hundred_rad(const std::string& step) {
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[output]
+report = false
+[[shaft]]
+name = "s"
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "d"
+at = "body:mid"
+mass = "100 kg"
+Ip = "0.5 kg.m^2"
+Id = "0.5 kg.m^2"
+[[bearing]]
+at = "body:mid"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+krr = "2e4 N.m/rad"
+[[unbalance]]
+at = "d"
+amount = "100 g.mm"
+[[probe]]
+name = "p"
+at = "d"
+[[step]]
+name = "u"
+)" + step;
+}
+
+}  // namespace
+
+// A point of the grid that is the resonance, inside it or at an end, hides nothing.
+TEST(UnboundedResponse, APointOnTheResonanceIsSaid) {
+  for (const std::string range :
+       {"start = \"0 rad/s\", stop = \"200 rad/s\", points = 6",
+        "start = \"0 rad/s\", stop = \"200 rad/s\", points = 7",
+        "start = \"0 rad/s\", stop = \"100 rad/s\", points = 5",
+        "start = \"100 rad/s\", stop = \"200 rad/s\", points = 5", "values = [\"100 rad/s\"]"}) {
+    const DeckRun unbalance(
+        hundred_rad("type = \"unbalance_response\"\noperating_speed = [\"1100 rpm\", \"1300 "
+                    "rpm\"]\nspeed = { " +
+                    range + " }\n"));
+    ASSERT_EQ(unbalance.exit, 0) << unbalance.log;
+    EXPECT_TRUE(unbalance.says("the response has no bound at 954.93 rpm"))
+        << range << unbalance.log;
+    EXPECT_TRUE(unbalance.says("1 separation margin FAILED")) << range << unbalance.log;
+    EXPECT_FALSE(unbalance.says("not finite") || unbalance.says("is zero")) << unbalance.log;
+    EXPECT_EQ(unbalance.csv("u_peaks.csv").rows.size(), 1u) << range;
+    for (const double x : column(unbalance.csv("u_response.csv"), "p major [m]"))
+      EXPECT_LT(x, 10.0) << range;
+    const DeckRun harmonic(hundred_rad("type = \"harmonic_response\"\nfrequency = { " + range +
+                                       " }\n[[step.force]]\nat = \"d\"\nforce = [\"0 N\", \"1 N\", "
+                                       "\"0 N\"]\n"));
+    ASSERT_EQ(harmonic.exit, 0) << harmonic.log;
+    EXPECT_TRUE(harmonic.says("the response has no bound at 15.9155 Hz")) << range << harmonic.log;
+    EXPECT_EQ(harmonic.csv("u_peaks.csv").rows.size(), 1u) << range;
+  }
+}
+
 // The faintest damping bounds it: the amplitude is that of one mode, in proportion to 1/c.
 TEST(UnboundedResponse, FaintDampingBoundsIt) {
   std::vector<double> size;

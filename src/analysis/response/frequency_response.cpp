@@ -15,16 +15,15 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   FrequencyPoint p;
   p.Omega = Omega;
   p.frequency = w;
-  VecXc force = VecXc::Zero(linear_.system().size()), a = force;
+  VecXc given = VecXc::Zero(linear_.system().size()), force;
   for (const HarmonicForce& f : options_.forces)
-    force[f.unknown] += scale * f.amplitude;
-  if (solver_.prepare(Omega, w)) {
+    given[f.unknown] += scale * f.amplitude;
+  const VecXc a = solver_.response(Omega, w, [&] {
+    force = given;
     linear_.system().reduce(linear_.equilibrium().state, force);
-    a = force;
-    solver_.solve(a);
-  } else {
-    a.setConstant(Complex(nan, nan));  // undamped resonance met exactly
-  }
+    return force;
+  });
+  if (force.size() == 0) force = given;
   for (const ResponseProbe& probe : options_.probes)
     p.probe.push_back(amplitude_at(linear_, a, probe.point));
   drop_rounding(largest_displacement(linear_.system(), a), p.probe);

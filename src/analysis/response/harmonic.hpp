@@ -24,7 +24,21 @@ class HarmonicSolver {
   /// it moves without bound become NaN, the others are right.
   /// @pre prepare() went well; x of length system().size().
   void solve(VecXc& x);
-  /// The same of every column.
+  /// S^-1 f with f = force(), called once prepared. Where an undamped resonance is met exactly: beside
+  /// it, where the response of what is forced is seen to grow without bound, and of what is not is
+  /// right. NaN: no answer there either.
+  template <class Force>
+  VecXc response(double Omega, double w, const Force& force) {
+    constexpr double beside = 1e-9;
+    for (const double at_w : {w, (1.0 + beside) * w}) {
+      if (!prepare(Omega, at_w)) continue;
+      VecXc x = force();
+      solve(x);
+      if (w == 0.0 || x.allFinite()) return x;
+    }
+    return VecXc::Constant(linear_.system().size(), Complex(nan, nan));
+  }
+  /// solve() of every column.
   void solve_columns(MatXc& x);
   /// Of the last solve() at w = 0, or so slow that it turns on and on, with a force that turns a free
   /// rotor: the motion without that turning, for all that does not hang on it; empty else.

@@ -80,8 +80,11 @@ VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
 
 VecXc UnbalanceSolver::turn(double Omega, const VecXc& forcing, bool with_multiples,
                             SteadyPoint& p) {
+  constexpr double beside = 1e-9;  // of an undamped resonance that is met exactly
   if (with_multiples) {
     std::vector<VecXc> all = axes_->multiples(Omega, -forcing, options_.multiples);
+    if (!all[1].allFinite())
+      all = axes_->multiples((1.0 + beside) * Omega, -forcing, options_.multiples);
     for (VecXc& a : all)
       linear_.system().complete(linear_.equilibrium().state, a);
     p.left_out = axes_->last_share();
@@ -90,6 +93,7 @@ VecXc UnbalanceSolver::turn(double Omega, const VecXc& forcing, bool with_multip
     return once;
   }
   VecXc a = axes_->response(Omega, -forcing);
+  if (!a.allFinite()) a = axes_->response((1.0 + beside) * Omega, -forcing);
   if (Omega < 0) a = a.conjugate().eval();
   linear_.system().complete(linear_.equilibrium().state, a);
   p.left_out = axes_->last_share();
@@ -181,12 +185,9 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
       a = breathe(Omega, p);
     } else if (axes_) {
       a = turn(Omega, linear_.forcing()[k], with_outputs && options_.multiples > 0, p);
-    } else if (solver_.prepare(Omega, w)) {
-      a = force_of(k, Omega);
-      solver_.solve(a);
-      if (w == 0.0 && solver_.bounded().size() > 0) a = solver_.bounded();
     } else {
-      a = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
+      a = solver_.response(Omega, w, [&] { return force_of(k, Omega); });
+      if (w == 0.0 && solver_.bounded().size() > 0) a = solver_.bounded();
     }
     largest = std::max(largest, largest_displacement(linear_.system(), a));
     p.probe.emplace_back();
@@ -325,6 +326,28 @@ void UnbalanceSolver::add_edges_of_no_motion(std::size_t order, std::size_t prob
                    [](const ResponsePeak& a, const ResponsePeak& b) { return a.speed < b.speed; });
 }
 
+void UnbalanceSolver::add_unbounded_ends(const std::vector<SteadyPoint>& points) {
+  constexpr double above_its_neighbour = 10.0;
+  const std::size_t last = points.size() - 1;
+  for (std::size_t end = 0; end <= last; end += std::max<std::size_t>(last, 1)) {
+    const SteadyPoint& here = points[end];
+    const SteadyPoint& beside = points[end == 0 ? std::min<std::size_t>(1, last) : last - 1];
+    if (here.Omega == 0.0 || !here.found) continue;
+    for (std::size_t order = 0; order < here.probe.size(); ++order)
+      for (std::size_t probe = 0; probe < here.probe[order].size(); ++probe) {
+        const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
+        if (last > 0 && !(size(here) > above_its_neighbour * size(beside))) continue;
+        ResponsePeak peak;
+        peak.order = order;
+        peak.probe = probe;
+        peak.speed = peak.low = peak.high = peak.low_seen = peak.high_seen = here.Omega;
+        peak.amplitude = infinity;
+        peak.bounded = is_bounded(peak);
+        if (!peak.bounded) peaks_.push_back(peak);
+      }
+  }
+}
+
 std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& speeds) {
   constexpr std::size_t batch = 64;       // equilibria kept at a time
   constexpr std::size_t run_length = 16;  // speeds of one solver
@@ -444,6 +467,7 @@ UnbalanceResponse UnbalanceSolver::run() {
     std::erase_if(
         open, [&](std::size_t k) { return !shows_another(out.points, k / probes, k % probes); });
   }
+  add_unbounded_ends(out.points);
   drop_unbounded(out.points);
   if (options_.refine_peaks) find_peaks_of_multiples(out.points);
   drop_unbounded(out.points);

@@ -112,6 +112,8 @@ class UnbalanceSolver {
   /// Where points without a motion begin and end the response has no bound.
   void add_edges_of_no_motion(std::size_t order, std::size_t probe,
                               const std::vector<SteadyPoint>& points);
+  /// The first and the last speed, where they meet a resonance that nothing damps.
+  void add_unbounded_ends(const std::vector<SteadyPoint>& points);
   /// A maximum among the points that is none of the peaks: points about one peak may show another.
   bool shows_another(const std::vector<SteadyPoint>& points, std::size_t order,
                      std::size_t probe) const;
