@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -108,13 +109,33 @@ void check_places(const ApiMachine& a, const model::Step& step, const model::Api
                        "[[probe]] with name and at, beside each journal");
 }
 
-/// Lateral stiffness k in both directions, what acts along and about the shaft kept.
-model::LinearBearing isotropic(const model::LinearBearing& given, double k) {
-  model::LinearBearing b;
-  b.K(0, 0) = given.K(0, 0);
-  b.K(3, 3) = given.K(3, 3);
-  b.K(1, 1) = b.K(2, 2) = k;
-  return b;
+/// Entries of a stiffness in x, y, z, ry, rz but for the lateral ones.
+void take_of_five(const Matrix<5>& of_five, Matrix<6>& K) {
+  constexpr std::array<Index, 5> place{0, 1, 2, 4, 5};
+  for (Index i = 0; i < 5; ++i)
+    for (Index j = 0; j < 5; ++j) {
+      const bool lateral = (i == 1 || i == 2) && (j == 1 || j == 2);
+      if (!lateral) K(place[at(i)], place[at(j)]) = of_five(i, j);
+    }
+}
+
+/// The part of a stiffness that is the same in every plane and stores energy: the mean over all angles
+/// about the shaft, symmetric. Both lateral directions have the mean of their direct stiffnesses then,
+/// both tilts that of theirs.
+Matrix<6> alike_in_every_plane(const Matrix<6>& given) {
+  Matrix<6> turn = Matrix<6>::Zero();  // by a quarter
+  for (const Index i : {0, 3}) {
+    turn(i, i) = 1.0;
+    turn(i + 1, i + 2) = -1.0;
+    turn(i + 2, i + 1) = 1.0;
+  }
+  const Matrix<6> symmetric = 0.5 * (given + given.transpose());
+  Matrix<6> mean = Matrix<6>::Zero(), turned = symmetric;
+  for (int k = 0; k < 4; ++k) {
+    mean += 0.25 * turned;
+    turned = turn * turned * turn.transpose();
+  }
+  return mean;
 }
 
 }  // namespace
@@ -215,7 +236,7 @@ model::Model with_tables(const run::Job& parent, const ApiMachine& machine, cons
       Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero();
       K.block<2, 2>(1, 1) = found->K;
       C.block<2, 2>(1, 1) = found->C;
-      if (found->K5) K(0, 0) = (*found->K5)(0, 0);
+      if (found->K5) take_of_five(*found->K5, K);
       tables[i].speed.push_back(Omega * m.shafts[machine.shaft].speed_ratio);
       tables[i].K.push_back(K);
       tables[i].C.push_back(C);
@@ -238,18 +259,15 @@ model::Model with_mean_stiffness(const ApiMachine& machine, const model::Model& 
   for (const std::size_t i : machine.journals) {
     model::BearingLaw& law = m.bearings[i].law;
     if (auto* table = std::get_if<model::TableBearing>(&law)) {
-      for (Matrix<6>& K : table->K) {
-        model::LinearBearing b;
-        b.K = K;
-        K = isotropic(b, 0.5 * (K(1, 1) + K(2, 2))).K;
-      }
+      for (Matrix<6>& K : table->K)
+        K = alike_in_every_plane(K);
       for (Matrix<6>& C : table->C)
         C.setZero();
       table->M.clear();
     } else if (const auto K = *model::traits_of(law).stiffness) {
-      model::LinearBearing b;
-      b.K = *K;
-      law = isotropic(b, 0.5 * ((*K)(1, 1) + (*K)(2, 2)));
+      model::LinearBearing mean;
+      mean.K = alike_in_every_plane(*K);
+      law = mean;
     }
   }
   return m;
