@@ -453,13 +453,12 @@ WeightedStatistics weighted_statistics(const std::vector<double>& values,
   double sum = 0, squares = 0;
   WeightedStatistics s;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (std::isnan(values[k])) continue;
+    if (std::isnan(values[k]) || weights[k] == 0.0) continue;
     known.emplace_back(values[k], weights[k]);
     sum += weights[k];
     squares += weights[k] * weights[k];
     s.mean += weights[k] * values[k];
   }
-  WHIRL_EXPECTS(!known.empty());
   if (!(sum > 0)) return {0, nan, nan, nan, nan, nan, nan, nan, nan};
   std::sort(known.begin(), known.end());
   s.mean /= sum;
@@ -504,7 +503,7 @@ Split split_at(const std::vector<double>& values, const std::vector<double>& wei
     if (std::isnan(values[k])) continue;
     ++s.runs;
     s.squares += w * w;
-    if (!lies_beyond(values[k], limit, above)) continue;
+    if (w == 0.0 || !lies_beyond(values[k], limit, above)) continue;
     ++s.hits;
     s.beyond += w;
     s.squares_beyond += w * w;

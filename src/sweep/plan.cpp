@@ -274,9 +274,11 @@ std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64
   std::vector<std::int64_t> out;
   for (const Worst& w : plan.worst) {
     std::vector<std::pair<double, std::int64_t>> order;
-    for (const auto& [run, row] : rows)
+    for (const auto& [run, row] : rows) {
+      if (plan.design.weight(run) == 0.0) continue;  // drawn where the distribution has nothing
       if (const Answer& a = row.answers[w.response]; a.failure.empty() && a.word.empty())
         order.emplace_back(w.least ? a.value : -a.value, run);
+    }
     std::sort(order.begin(), order.end());
     for (std::size_t k = 0; k < std::min(w.count, order.size()); ++k)
       if (std::find(out.begin(), out.end(), order[k].second) == out.end())

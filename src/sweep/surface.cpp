@@ -174,7 +174,8 @@ void fill(const Surface& value, const Range& x, const Range& y, const plot::Axis
   const std::vector<double> known = finite(corners.values);
   if (known.empty()) return;
   const auto [least, largest] = std::minmax_element(known.begin(), known.end());
-  if (!(*largest > *least)) return;
+  constexpr double rounding = 1e-9;  // a surface that is one value
+  if (!(*largest - *least > rounding * std::max(std::abs(*least), std::abs(*largest)))) return;
   const double step = step_of_levels(*largest - *least);
   plot::HeatMap heat{corners.nx, corners.ny, x.low, x.high, y.low, y.high, {}, {}, {}};
   heat.label = of_response.label;
@@ -186,10 +187,10 @@ void fill(const Surface& value, const Range& x, const Range& y, const plot::Axis
     }
   heat.min = std::floor(*least / step) * step;
   heat.max = std::ceil(*largest / step) * step;
-  const auto first = static_cast<int>(std::ceil(*least / step));
-  const auto last = static_cast<int>(std::floor(*largest / step));
-  for (int level = first; level <= last; ++level)
-    add_level(corners, level * step, axes);
+  const double first = std::ceil(*least / step);
+  const auto levels = static_cast<int>(std::floor(*largest / step) - first) + 1;
+  for (int k = 0; k < levels; ++k)
+    add_level(corners, (first + k) * step, axes);
   axes.heat.push_back(std::move(heat));
 }
 

@@ -226,6 +226,27 @@ TEST(Contours, OfSamplesSayWhatTheFitLeaves) {
           .axes.empty());
 }
 
+TEST(Contours, OfOneValueAreNone) {
+  // a fit of equal values differs by rounding, which no level parts
+  const Plan plan = plan_of(two_keys, 60);
+  const Columns c = columns_by(plan, [](const std::vector<double>&) { return 71.17625434171771; });
+  EXPECT_TRUE(contours(plan, c, 0).axes.empty());
+}
+
+TEST(WorstRuns, AreOfTheDistribution) {
+  Plan plan = plan_of({"a.x=uniform(8, 12) drawn normal(10, 4)"}, 100);
+  plan.worst.push_back({0, false, 3});
+  std::map<std::int64_t, Row> rows;
+  for (std::int64_t run = 0; run < plan.design.runs(); ++run) {
+    rows[run].run = run;
+    rows[run].answers.push_back({leading_number(plan.design.values(run)[0]), "mm", "", ""});
+  }
+  const std::vector<std::int64_t> worst = worst_runs(plan, rows);
+  ASSERT_EQ(worst.size(), 3u);
+  for (const std::int64_t run : worst)
+    EXPECT_LE(rows[run].answers[0].value, 12.0);
+}
+
 TEST(ScatterMatrix, HasEveryColumnAgainstEveryOther) {
   const Plan plan = plan_of(two_keys, 700);
   const plot::Figure f =

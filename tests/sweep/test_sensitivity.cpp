@@ -158,6 +158,16 @@ TEST(Distributions, ScoresAreThoseOfTheirQuantiles) {
   }
 }
 
+// What the distribution cannot give is neither least nor largest of it.
+TEST(WeightedSamples, OfNoWeightAreNone) {
+  const std::vector<double> x{-9, 1, 2, 3, 9}, w{0, 1, 1, 1, 0};
+  const WeightedStatistics s = weighted_statistics(x, w);
+  EXPECT_DOUBLE_EQ(s.least, 1);
+  EXPECT_DOUBLE_EQ(s.largest, 3);
+  EXPECT_EQ(probability_beyond(x, w, 2.5, true).runs, 1u);
+  EXPECT_TRUE(std::isnan(weighted_statistics({5.0}, {0.0}).mean));
+}
+
 TEST(WeightedSamples, OfEqualWeightAreOrdinaryOnes) {
   const std::vector<double> x{3, 1, 2, nan, 5, 4}, one(6, 1.0);
   const WeightedStatistics w = weighted_statistics(x, one);
