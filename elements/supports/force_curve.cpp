@@ -1,5 +1,6 @@
 #include <elements/supports/force_curve.hpp>
 #include <core/contract.hpp>
+#include <core/law.hpp>
 
 #include <core/error.hpp>
 
@@ -89,17 +90,13 @@ ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<dou
   for (std::size_t i = 0; i < n; ++i)
     if (!std::isfinite(x[i]) || !std::isfinite(F[i]) || (i > 0 && !(x[i] > x[i - 1])))
       curve_fault("deflections must be finite and increase");
-  std::vector<double> d(n - 1), m(n);
+  std::vector<double> d(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i)
     d[i] = (F[i + 1] - F[i]) / (x[i + 1] - x[i]);
-  m.front() = d.front();
-  m.back() = d.back();
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double h0 = x[i] - x[i - 1], h1 = x[i + 1] - x[i], w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-    m[i] = d[i - 1] * d[i] > 0 ? (w0 + w1) / (w0 / d[i - 1] + w1 / d[i]) : 0.0;
-  }
+  std::vector<double> m{d.front(), d.back()};  // of straight lines the ends alone
+  if (monotone_cubic) m = pchip_slopes(x, F);
   ForceCurve f;
-  f.pieces_.push_back({x[0], {F[0], m[0]}});
+  f.pieces_.push_back({x[0], {F[0], m.front()}});
   f.breaks_.push_back(x[0]);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double h = x[i + 1] - x[i];
@@ -112,7 +109,7 @@ ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<dou
     f.pieces_.push_back(p);
     f.breaks_.push_back(x[i + 1]);
   }
-  f.pieces_.push_back({x[n - 1], {F[n - 1], m[n - 1]}});
+  f.pieces_.push_back({x[n - 1], {F[n - 1], m.back()}});
   f.integrate();
   return f;
 }

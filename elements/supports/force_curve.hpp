@@ -25,8 +25,8 @@ class ForceCurve {
   /// F = sum c_k x^k, at most degree 7.
   /// @throws Error E82: more than 8 coefficients, a coefficient not finite.
   static ForceCurve polynomial(const std::vector<double>& c);
-  /// Through (x_i, F_i), x strictly increasing: straight lines, or monotone cubics
-  /// (Fritsch-Carlson); outside straight on with the end slope.
+  /// Through (x_i, F_i), x strictly increasing: straight lines, or monotone cubics with the slopes
+  /// of time laws and bearing tables (pchip_slopes); outside straight on with the end slope.
   /// @throws Error E82: fewer than 2 points, x not increasing.
   static ForceCurve table(const std::vector<double>& x, const std::vector<double>& F,
                           bool monotone_cubic);

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <core/law.hpp>
 #include <core/rotation.hpp>
@@ -400,16 +401,15 @@ LawPtr make_table(std::vector<double> t, std::vector<double> f) {
   return make_held(std::move(t), f.front(), f.back(), std::move(inner));
 }
 
-LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
-  require_increasing(t, f.size(), "table");
-  require_finite(f, "table");
-  const std::size_t n = t.size();
-  if (n < 3) return make_table(std::move(t), std::move(f));
+std::vector<double> pchip_slopes(std::span<const double> x, std::span<const double> f) {
+  WHIRL_EXPECTS(x.size() == f.size() && x.size() >= 2);
+  const std::size_t n = x.size();
   std::vector<double> h(n - 1), secant(n - 1), slope(n);
   for (std::size_t k = 0; k + 1 < n; ++k) {
-    h[k] = t[k + 1] - t[k];
+    h[k] = x[k + 1] - x[k];
     secant[k] = (f[k + 1] - f[k]) / h[k];
   }
+  if (n == 2) return {secant[0], secant[0]};
   for (std::size_t k = 1; k + 1 < n; ++k) {
     if (secant[k - 1] * secant[k] <= 0.0) continue;
     const double w1 = 2.0 * h[k] + h[k - 1], w2 = h[k] + 2.0 * h[k - 1];
@@ -424,10 +424,21 @@ LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
   };
   slope[0] = end(h[0], h[1], secant[0], secant[1]);
   slope[n - 1] = end(h[n - 2], h[n - 3], secant[n - 2], secant[n - 3]);
+  return slope;
+}
+
+LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
+  require_increasing(t, f.size(), "table");
+  require_finite(f, "table");
+  const std::size_t n = t.size();
+  if (n < 3) return make_table(std::move(t), std::move(f));
+  const std::vector<double> slope = pchip_slopes(t, f);
   std::vector<std::vector<double>> inner;
-  for (std::size_t k = 0; k + 1 < n; ++k)
-    inner.push_back({f[k], slope[k], (3.0 * secant[k] - 2.0 * slope[k] - slope[k + 1]) / h[k],
-                     (slope[k] + slope[k + 1] - 2.0 * secant[k]) / (h[k] * h[k])});
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    const double h = t[k + 1] - t[k], secant = (f[k + 1] - f[k]) / h;
+    inner.push_back({f[k], slope[k], (3.0 * secant - 2.0 * slope[k] - slope[k + 1]) / h,
+                     (slope[k] + slope[k + 1] - 2.0 * secant) / (h * h)});
+  }
   return make_held(std::move(t), f.front(), f.back(), std::move(inner));
 }
 

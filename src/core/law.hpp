@@ -2,6 +2,7 @@
 // angles, loads, growing unbalance and base motion all use these.
 #pragma once
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace whirl {
@@ -57,6 +58,10 @@ LawPtr make_constant(double c);
 /// Straight lines through (t_i, f_i), held constant outside.
 /// @throws Error if there is no point, lengths differ, t not increasing, not finite.
 LawPtr make_table(std::vector<double> t, std::vector<double> f);
+/// Slopes at the points of a monotone piecewise cubic (weighted harmonic means of Fritsch and Butland, doi
+/// 10.1137/0905021; at the ends by three points, limited): f' where f is a parabola but for the limits.
+/// @pre x increasing, at least two points, as many of f.
+std::vector<double> pchip_slopes(std::span<const double> x, std::span<const double> f);
 /// Monotone piecewise cubic (Fritsch-Carlson conditions, slopes by the weighted harmonic mean of
 /// Fritsch and Butland, doi 10.1137/0905021) through (t_i, f_i), held constant outside. Errors as
 /// make_table.

@@ -1,6 +1,7 @@
 // Force curves and the nonlinear springs made of them.
 #include "conformance.hpp"
 #include <core/error.hpp>
+#include <core/law.hpp>
 #include <elements/supports/nonlinear_spring.hpp>
 
 using namespace whirl;
@@ -52,6 +53,20 @@ TEST(ForceCurve, Shapes) {
   const auto line = ForceCurve::table({-1, 0, 2}, {-5, 0, 4}, false);
   EXPECT_NEAR(line(-3), -15, 1e-14);
   EXPECT_NEAR(line(3), 6, 1e-14);
+}
+
+// Rows of F = 100 x^2: the slopes at the ends are those of the parabola. Places of 50, 1200 and 2000 N by
+// scipy.interpolate.PchipInterpolator 1.10.
+TEST(ForceCurve, MonotoneCubicsHaveTheSlopesOfLawsAndTables) {
+  const auto f = ForceCurve::table({0, 1, 2, 3, 4}, {0, 100, 400, 900, 1600}, true);
+  EXPECT_EQ(f.at(0).slope, 0.0);
+  EXPECT_NEAR(f.at(4).slope, 800, 1e-12);
+  EXPECT_NEAR(f(4.5), 2000, 1e-12);
+  EXPECT_NEAR(f(0.65270), 50, 1e-2);
+  EXPECT_NEAR(f(3.46729), 1200, 1e-2);
+  const auto law = make_pchip({0, 1, 2, 3, 4}, {0, 100, 400, 900, 1600});
+  for (const double x : {0.1, 0.7, 1.3, 2.9, 3.6})
+    EXPECT_NEAR(f(x), law->at(x).f, 1e-12 * 1600) << x;
 }
 
 TEST(ForceCurve, BadInput) {
