@@ -273,8 +273,9 @@ struct TorqueCurve {
 };
 
 struct PrescribedSpin {
-  LawPtr angle;
-};  ///< phi(t) at the station, exact constraint
+  LawPtr angle;              ///< phi(t) at the station, exact constraint
+  bool angle_given = false;  ///< by the deck; else only the speed matters
+};
 struct Drive : Entity {
   Location at;
   std::variant<PrescribedSpin, TorqueCurve> law;

@@ -238,20 +238,31 @@ std::unique_ptr<system::SystemProblem> transient_problem(const run::Job& job,
 namespace {
 
 /// A drive that prescribes another speed than the rotor has where the step goes on: an infinite
-/// torque for an instant.
+/// torque for an instant. An angle goes on from the one there, whatever its law says.
 void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState& start) {
+  constexpr double seen = 1e-3;      // of the speed
+  constexpr double rounding = 1e-6;  // of the angle
   for (const model::Drive& d : job.model.drives) {
     const auto* law = std::get_if<model::PrescribedSpin>(&d.law);
     if (!law || !law->angle || (!d.step.empty() && d.step != step.name)) continue;
-    const double wanted = law->angle->at(start.state.t).df;
-    const double now = start.state.v[6 * job.mesh.place(d.at).node + system::spin_phi];
-    if (std::abs(wanted - now) <= 1e-3 * std::max(std::abs(wanted), std::abs(now))) continue;
-    results::warn_of_step(
-        job, step,
-        fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at "
-                    "{:.6g} rpm: its speed jumps",
-                    d.name, to_rpm(wanted), start.state.t, job.model.shafts[d.at.shaft].name,
-                    to_rpm(now)));
+    const Index node = job.mesh.place(d.at).node;
+    const Index k = 6 * node + system::spin_phi;
+    const double turns = start.state.frames.turns[at(job.system().node(node).line)];
+    const std::string& shaft = job.model.shafts[d.at.shaft].name;
+    const LawValue wanted = law->angle->at(start.state.t);
+    const double speed = start.state.v[k], angle = start.state.q[k] + two_pi * turns;
+    if (std::abs(wanted.df - speed) > seen * std::max(std::abs(wanted.df), std::abs(speed)))
+      results::warn_of_step(
+          job, step,
+          fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at "
+                      "{:.6g} rpm: its speed jumps",
+                      d.name, to_rpm(wanted.df), start.state.t, shaft, to_rpm(speed)));
+    if (law->angle_given && std::abs(wanted.f - angle) > rounding * (1.0 + std::abs(angle)))
+      results::warn_of_step(
+          job, step,
+          fmt::format("drive '{}' prescribes an angle of {:.6g} rad at t = {:.6g} s, where shaft "
+                      "'{}' stands at {:.6g} rad: it turns on from there, off by {:.6g} rad",
+                      d.name, wanted.f, start.state.t, shaft, angle, angle - wanted.f));
   }
 }
 

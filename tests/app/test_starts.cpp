@@ -195,3 +195,32 @@ from = "st"
     EXPECT_LT(std::hypot(row.at("P.y [m]"), row.at("P.z [m]")), 2 * bow);
   }
 }
+
+// A step that goes on from another turns on from the angle there: what its drive prescribes besides is told.
+TEST(Starts, AnAngleThatIsNotThereIsTold) {
+  const auto run_with = [](const std::string& drive) {
+    return DeckRun(
+        rotor("[[drive]]\nname = \"m\"\nat = \"a:start\"\nstep = \"one\"\ntype = "
+              "\"speed\"\nspeed = \"600 rpm\"\n[[drive]]\nname = \"n\"\nat = "
+              "\"a:start\"\nstep = \"two\"\n" +
+              drive +
+              "[[step]]\nname = \"one\"\ntype = \"transient\"\nduration = \"50 ms\"\n"
+              "[[step]]\nname = \"two\"\ntype = \"transient\"\nfrom = \"one\"\n"
+              "duration = \"5 ms\"\n"));
+  };
+  // half a turn on: 0.05 s at 10 Hz, and as many rad more as the law has
+  const DeckRun ahead = run_with(
+      "type = \"angle\"\nangle = { type = \"polynomial\", coefficients = [\"1 rad\", "
+      "\"62.83185307179586 rad/s\"] }\n");
+  ASSERT_EQ(ahead.exit, 0) << ahead.log;
+  EXPECT_TRUE(ahead.says("stands at 3.14159 rad: it turns on from there, off by -1 rad"))
+      << ahead.log;
+  const DeckRun given = run_with("type = \"speed\"\nspeed = \"600 rpm\"\nangle = \"90 deg\"\n");
+  EXPECT_TRUE(given.says("off by -1.5708 rad")) << given.log;
+  const DeckRun speed = run_with("type = \"speed\"\nspeed = \"600 rpm\"\n");
+  EXPECT_FALSE(speed.says("turns on from there")) << speed.log;
+  const DeckRun same = run_with(
+      "type = \"angle\"\nangle = { type = \"polynomial\", coefficients = [\"0 rad\", "
+      "\"62.83185307179586 rad/s\"] }\n");
+  EXPECT_FALSE(same.says("turns on from there")) << same.log;
+}

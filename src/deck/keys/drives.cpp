@@ -13,16 +13,20 @@ void describe_speed(Visitor& v, model::Drive& d) {
   double angle = 0;
   describe_law(v, required("speed"), speed, "rpm",
                "speed of the station, constant or a law of time; held exactly, without a spring");
-  v.quantity("angle", angle, "deg", any, "angle at time 0");
+  v.quantity("angle", angle, "deg", any,
+             "angle at time 0; a step that goes on from another turns on from the angle there");
   d.law = model::PrescribedSpin{};
-  if (v.clean() && speed) d.law = model::PrescribedSpin{make_angle_of_speed(speed, angle)};
+  if (v.clean() && speed)
+    d.law = model::PrescribedSpin{make_angle_of_speed(speed, angle), angle != 0.0};
 }
 
 void describe_angle(Visitor& v, model::Drive& d) {
   LawPtr angle;
-  describe_law(v, required("angle"), angle, "rad",
-               "angle of the station against time; held exactly");
-  d.law = model::PrescribedSpin{angle};
+  describe_law(
+      v, required("angle"), angle, "rad",
+      "angle of the station against time; held exactly, in a step that goes on from another "
+      "from the angle there");
+  d.law = model::PrescribedSpin{angle, true};
 }
 
 struct SpeedTorque {
