@@ -2,7 +2,10 @@
 // spin, real roots judged, rounding no instability.
 #include "deck_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 using whirl::test::Columns;
 using whirl::test::DeckRun;
@@ -378,4 +381,61 @@ report = false
   const std::vector<double> forward = column(c, "3 F frequency [Hz]");
   ASSERT_EQ(forward.size(), 13u);
   EXPECT_GT(forward.back(), column(c, "4 B frequency [Hz]").back());
+}
+
+namespace {
+
+/// So many rigid rotors alike, each on springs of its own.
+std::string rotors_alike(int count) {
+  std::string deck = "format = 1\n[model]\ngravity = \"0 m/s^2\"\n[output]\nreport = false\n";
+  for (int k = 0; k < count; ++k)
+    deck += fmt::format(R"([[shaft]]
+name = "s{0}"
+origin = ["0 m", "{0} m", "0 m"]
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "d{0}"
+at = "s{0}/body:mid"
+mass = "100 kg"
+Ip = "0.5 kg.m^2"
+Id = "1 kg.m^2"
+[[bearing]]
+name = "B{0}"
+at = "s{0}/body:mid"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "20 N.s/m"
+czz = "20 N.s/m"
+krr = "2e4 N.m/rad"
+)",
+                        k);
+  return deck + R"([[step]]
+name = "c"
+type = "campbell"
+motion = "lateral"
+modes = )" +
+         std::to_string(4 * count) +
+         "\nspeed = { start = \"0 rpm\", stop = \"2000 rpm\", points = 11 }\n";
+}
+
+}  // namespace
+
+// Of modes of one frequency any basis of their space may come out: a line is one of the space.
+TEST(Spectra, ShaftsAlikeHaveWholeLines) {
+  for (const int count : {1, 2, 3}) {
+    const DeckRun run(rotors_alike(count));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_TRUE(run.says(fmt::format("c: {} modes at 11 speeds", 4 * count))) << run.log;
+    const Columns c = run.csv("c_campbell.csv");
+    for (std::size_t k = 0; k < c.names.size(); ++k) {
+      if (c.names[k].find("frequency") == std::string::npos) continue;
+      for (const auto& row : c.rows)
+        EXPECT_TRUE(std::isfinite(row[k])) << count << " " << c.names[k];
+    }
+  }
 }

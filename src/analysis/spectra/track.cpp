@@ -1,6 +1,7 @@
 #include <analysis/spectra/track.hpp>
 #include <core/contract.hpp>
 
+#include <la/dense.hpp>
 #include <la/multiply.hpp>
 
 #include <algorithm>
@@ -36,32 +37,98 @@ struct ModeTracker::Likeness {
   Index old, now;
 };
 
+namespace {
+
+/// Modes of one eigenvalue, of which any basis of their space may come out (two shafts alike). Two planes
+/// of one shaft at rest are left to the pairing of planar modes.
+std::vector<std::vector<std::size_t>> sets_of_equals(const std::vector<const WhirlMode*>& modes) {
+  constexpr double equal = 1e-9;
+  std::vector<std::vector<std::size_t>> out;
+  std::vector<bool> taken(modes.size(), false);
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (taken[i] || !modes[i]->oscillates()) continue;
+    std::vector<std::size_t> set{i};
+    for (std::size_t j = i + 1; j < modes.size(); ++j)
+      if (!taken[j] &&
+          std::abs(modes[j]->lambda - modes[i]->lambda) <= equal * std::abs(modes[i]->lambda))
+        set.push_back(j);
+    const bool planes = set.size() == 2 && modes[i]->direction == Direction::planar &&
+                        modes[set[1]]->direction == Direction::planar;
+    if (set.size() < 2 || planes) continue;
+    for (const std::size_t j : set)
+      taken[j] = true;
+    out.push_back(std::move(set));
+  }
+  return out;
+}
+
+/// Share of x in the space of a set, by the metric M: 1 where it lies in it.
+double share_in_space(const std::vector<const WhirlMode*>& modes, const std::vector<VecXc>& mx,
+                      const std::vector<std::size_t>& set, const VecXc& x, double size) {
+  const auto n = static_cast<Index>(set.size());
+  MatXc gram(n, n);
+  VecXc on(n);
+  for (Index a = 0; a < n; ++a) {
+    const VecXc& of = modes[set[at(a)]]->x;
+    for (Index b = 0; b < n; ++b)
+      gram(a, b) = of.dot(mx[set[at(b)]]);
+    on[a] = std::conj(x.dot(mx[set[at(a)]]));
+  }
+  const double share = on.dot(la::pivoted_solution(gram, on)).real() / size;
+  return std::isfinite(share) ? std::min(share, 1.0) : 0.0;
+}
+
+}  // namespace
+
 std::vector<ModeTracker::Likeness> ModeTracker::compare(const std::vector<WhirlMode>& found) {
-  const std::size_t n = found.size();
-  // M products of the new modes once
+  // M products of all modes once
   const la::MCK& m = solver_.matrices();
-  std::vector<VecXc> mx(n);
-  std::vector<double> norm(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    la::multiply(m.M, found[j].x, mx[j]);
-    norm[j] = std::abs(found[j].x.dot(mx[j]));
-  }
-  std::vector<Likeness> pairs;
-  VecXc my;
-  for (std::size_t i = 0; i < modes_.size(); ++i) {
-    const WhirlMode& old = modes_[i].now;
-    la::multiply(m.M, old.x, my);
-    const double size = std::abs(old.x.dot(my));
-    for (std::size_t j = 0; j < n; ++j) {
-      const double like =
-          size > 0 && norm[j] > 0 ? std::norm(old.x.dot(mx[j])) / (size * norm[j]) : 0.0;
-      if (like < 0.05) continue;
-      const double apart = std::abs(found[j].lambda - old.lambda) /
-                           (std::abs(old.lambda) + std::abs(found[j].lambda) + 1e-300);
-      pairs.push_back(
-          {like - 0.5 * apart, like, apart, static_cast<Index>(i), static_cast<Index>(j)});
+  struct Side {
+    std::vector<const WhirlMode*> mode;
+    std::vector<VecXc> mx;
+    std::vector<double> size;
+    MatX in_sets_of_other;  ///< 1 where a mode lies in the space of equals that the other is one of
+  };
+  Side old, now;
+  for (const TrackedMode& x : modes_)
+    old.mode.push_back(&x.now);
+  for (const WhirlMode& x : found)
+    now.mode.push_back(&x);
+  for (Side* side : {&old, &now})
+    for (const WhirlMode* mode : side->mode) {
+      side->mx.emplace_back();
+      la::multiply(m.M, mode->x, side->mx.back());
+      side->size.push_back(std::abs(mode->x.dot(side->mx.back())));
     }
-  }
+  // [mode][mode of the other side]
+  const auto shares = [](const Side& of, const Side& other) {
+    MatX out =
+        MatX::Zero(static_cast<Index>(of.mode.size()), static_cast<Index>(other.mode.size()));
+    for (const std::vector<std::size_t>& set : sets_of_equals(other.mode))
+      for (std::size_t i = 0; i < of.mode.size(); ++i) {
+        if (!(of.size[i] > 0)) continue;
+        const double share = share_in_space(other.mode, other.mx, set, of.mode[i]->x, of.size[i]);
+        for (const std::size_t j : set)
+          out(static_cast<Index>(i), static_cast<Index>(j)) = share;
+      }
+    return out;
+  };
+  old.in_sets_of_other = shares(old, now);
+  now.in_sets_of_other = shares(now, old);
+  std::vector<Likeness> pairs;
+  for (std::size_t i = 0; i < old.mode.size(); ++i)
+    for (std::size_t j = 0; j < now.mode.size(); ++j) {
+      if (!(old.size[i] > 0 && now.size[j] > 0)) continue;
+      const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
+      const double own = std::norm(old.mode[i]->x.dot(now.mx[j])) / (old.size[i] * now.size[j]);
+      const double like = std::max({own, old.in_sets_of_other(a, b), now.in_sets_of_other(b, a)});
+      if (like < 0.05) continue;
+      const Complex was = old.mode[i]->lambda, is = now.mode[j]->lambda;
+      const double apart = std::abs(is - was) / (std::abs(was) + std::abs(is) + 1e-300);
+      // among equals those that are alike themselves
+      const double score = like - 0.5 * apart - 0.01 * (like - own);
+      pairs.push_back({score, like, apart, a, b});
+    }
   std::sort(pairs.begin(), pairs.end(),
             [](const Likeness& a, const Likeness& b) { return a.score > b.score; });
   return pairs;
