@@ -236,6 +236,8 @@ class AccuracyOutput final : public TransientOutput {
       judge_steps(end, warnings);
       judge_twist(end, warnings);
       judge_modes(end, warnings);
+      // both planes of a round rotor have the same to say
+      warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
       for (const std::string& w : warnings)
         warn_of_step(end.job, end.step, w);
     }
