@@ -201,12 +201,14 @@ const std::vector<CodeInfo>& error_catalogue() {
        "given, must agree with E/(2(1+nu)) for an "
        "isotropic material unless nu is left out.",
        ""},
-      {"E37", "a gear ratio or coupling that contradicts the speeds",
+      {"E37", "speeds that contradict each other",
        "The speeds of two geared shafts are to each other as -teeth/other_teeth (external gears "
        "turn against each other; other_teeth < 0, an "
        "internal gear, turns the same way). speed_ratio, initial_spin and prescribed speeds of the "
        "shafts must agree with it: the message names the "
-       "ratio that fits. Shafts joined by a coupling turn at one speed, and both turn.",
+       "ratio that fits. Shafts joined by a coupling turn at one speed, and both turn. Two drives "
+       "of one line of shafts prescribe one speed, else they wind up what is between them; a shaft "
+       "with rotating = false has none.",
        "[[shaft]]\nname = \"pinion\"\nspeed_ratio = -2.5\n\n[[bearing]]\ntype = \"gear\"\nat = "
        "\"wheel\"\nto = \"pinion:mid\"\nteeth = 50\nother_teeth = 20"},
       {"E38", "an unbalance that its shaft cannot have",

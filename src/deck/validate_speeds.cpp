@@ -179,19 +179,184 @@ void check_tables(const model::Model& m, Problems& out) {
   }
 }
 
+namespace {
+
+const model::PrescribedSpin* prescribes(const model::Drive& d) {
+  const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+  return p && p->angle ? p : nullptr;
+}
+
+bool acts_in(const model::Drive& d, const model::Step& s) {
+  return d.step.empty() || d.step == s.name;
+}
+
+struct TimeSpan {
+  double begin = 0, end = 0;
+};
+
+/// Times a transient runs through: they go on where it starts from another one.
+TimeSpan times_run(const model::Model& m, const model::Step& s) {
+  TimeSpan span;
+  for (const auto& earlier : m.steps) {
+    if (&earlier == &s) break;
+    if (earlier.name == s.from) span.begin = times_run(m, earlier).end;
+  }
+  const auto* t = std::get_if<model::TransientStep>(&s.law);
+  span.end = span.begin + (t ? t->duration : 0.0);
+  return span;
+}
+
+/// Times at which two laws are compared: at equal distances and at their corners.
+std::vector<double> times_to_compare(TimeSpan span, const model::PrescribedSpin& a,
+                                     const model::PrescribedSpin& b) {
+  constexpr int parts = 200;  // enough to see a law that does not follow the other
+  std::vector<double> times;
+  for (int i = 0; i <= parts; ++i)
+    times.push_back(span.begin + (span.end - span.begin) * i / parts);
+  for (const auto* law : {&a, &b})
+    for (const double t : law->angle->breakpoints())
+      if (t > span.begin && t < span.end) times.push_back(t);
+  return times;
+}
+
+/// What two drives prescribe at a time, rad/s, where what is between them must not follow.
+struct Contradiction {
+  double time, first, second;
+};
+
+/// A shaft between two stations with prescribed angles takes the twist of a vibration, or that of a
+/// test; it does not take a twist that grows: more than a radian in the step, or speeds that differ
+/// all the time. sign: of the second's turning seen in the axis of the first.
+std::optional<Contradiction> wound_up(const model::PrescribedSpin& a,
+                                      const model::PrescribedSpin& b, double sign, TimeSpan span) {
+  constexpr double most_twist = 1.0;  // rad
+  constexpr double digits = 1e-6;     // to which written speeds agree
+  const auto twist = [&](double t) { return sign * b.angle->at(t).f - a.angle->at(t).f; };
+  const double at_start = twist(span.begin);
+  std::optional<Contradiction> largest;
+  bool above = true, below = true, too_far = false;
+  for (const double t : times_to_compare(span, a, b)) {
+    const double first = a.angle->at(t).df, second = sign * b.angle->at(t).df;
+    const double slack = digits * std::max(std::abs(first), std::abs(second));
+    above = above && second - first > slack;
+    below = below && first - second > slack;
+    too_far = too_far || std::abs(twist(t) - at_start) > most_twist;
+    if (!largest || std::abs(second - first) > std::abs(largest->second - largest->first))
+      largest = {t, first, second};
+  }
+  const bool apart = a.of_speed && b.of_speed && (above || below);
+  return apart || too_far ? largest : std::nullopt;
+}
+
+/// The other of two ends of a joint that ties spins.
+std::optional<std::size_t> tied_by(const model::Joint& j, std::size_t shaft) {
+  const bool ties = j.kind == model::JointKind::rigid || j.kind == model::JointKind::slider ||
+                    j.kind == model::JointKind::universal;
+  if (!ties || !j.to) return std::nullopt;
+  if (j.at.shaft == shaft) return j.to->shaft;
+  if (j.to->shaft == shaft) return j.at.shaft;
+  return std::nullopt;
+}
+
+/// Whether two shafts turn as one: the same, or tied by joints, over others too.
+bool turn_as_one(const model::Model& m, std::size_t a, std::size_t b) {
+  std::vector<std::size_t> reached{a};
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    for (const model::Joint& j : m.joints) {
+      const auto other = tied_by(j, reached[k]);
+      if (!other || !m.shafts[*other].rotating) continue;
+      if (std::find(reached.begin(), reached.end(), *other) == reached.end())
+        reached.push_back(*other);
+    }
+  return std::find(reached.begin(), reached.end(), b) != reached.end();
+}
+
+void report_two_speeds(const model::Model& m, const model::Drive& a, const model::Drive& b,
+                       const Contradiction& c, const std::string& step, Problems& out) {
+  const std::string& first = m.shafts[a.at.shaft].name;
+  const std::string& second = m.shafts[b.at.shaft].name;
+  const std::string line =
+      first == second ? fmt::format("shaft '{}'", first)
+                      : fmt::format("shafts '{}' and '{}', which turn as one,", first, second);
+  report(
+      out, "E37",
+      fmt::format("drives '{}' and '{}' prescribe {} and {} for {}{}: what is between them would "
+                  "be wound up",
+                  a.name, b.name, units::display(c.first, "rpm"), units::display(c.second, "rpm"),
+                  line, step.empty() ? "" : fmt::format(" at {:.4g} s of step '{}'", c.time, step)),
+      "prescribe the speed at one station: the rest follows; or give the drives different steps",
+      b.where);
+}
+
+/// Two drives of one line of shafts that cannot both be followed: whether they are, and it is told.
+bool contradict(const model::Model& m, const model::Drive& a, const model::Drive& b,
+                Problems& out) {
+  const auto *p = prescribes(a), *q = prescribes(b);
+  if (!p || !q || !turn_as_one(m, a.at.shaft, b.at.shaft)) return false;
+  if (!m.shafts[a.at.shaft].rotating) return false;  // told of each
+  bool in_time = false;
+  // lines that are tied may be drawn in opposite directions
+  const bool same = a.at.shaft == b.at.shaft;
+  for (const auto& s : m.steps) {
+    const bool transient = std::holds_alternative<model::TransientStep>(s.law);
+    if (!transient || !acts_in(a, s) || !acts_in(b, s)) continue;
+    in_time = true;
+    const TimeSpan span = times_run(m, s);
+    const auto along = wound_up(*p, *q, 1.0, span);
+    if (!along || (!same && !wound_up(*p, *q, -1.0, span))) continue;
+    report_two_speeds(m, a, b, *along, s.name, out);
+    return true;
+  }
+  if (in_time || !a.step.empty() || !b.step.empty()) return false;
+  const auto along = wound_up(*p, *q, 1.0, {});
+  if (!along || (!same && !wound_up(*p, *q, -1.0, {}))) return false;
+  report_two_speeds(m, a, b, *along, "", out);
+  return true;
+}
+
+/// A casing stands: a drive may twist it, not turn it.
+void check_driven_casing(const model::Model& m, const model::Drive& d, Problems& out) {
+  const auto* p = prescribes(d);
+  const model::Shaft& casing = m.shafts[d.at.shaft];
+  if (!p || casing.rotating) return;
+  const model::PrescribedSpin still{make_constant(0.0), true};
+  std::optional<Contradiction> turned;
+  bool in_time = false;
+  for (const auto& s : m.steps) {
+    if (!std::holds_alternative<model::TransientStep>(s.law) || !acts_in(d, s)) continue;
+    in_time = true;
+    if (!turned) turned = wound_up(still, *p, 1.0, times_run(m, s));
+  }
+  if (!in_time && d.step.empty()) turned = wound_up(still, *p, 1.0, {});
+  if (!turned) return;
+  report(out, "E37",
+         fmt::format("drive '{}' prescribes {} for shaft '{}', which does not rotate", d.name,
+                     units::display(turned->second, "rpm"), casing.name),
+         "rotating = true for that shaft, or the drive at a station of one that turns", d.where);
+}
+
+}  // namespace
+
 void check_drives(const model::Model& m, Problems& out) {
-  for (std::size_t i = 0; i < m.drives.size(); ++i)
+  for (std::size_t i = 0; i < m.drives.size(); ++i) {
+    const model::Drive& b = m.drives[i];
+    check_driven_casing(m, b, out);
     for (std::size_t j = 0; j < i; ++j) {
-      const auto &a = m.drives[j], &b = m.drives[i];
+      const model::Drive& a = m.drives[j];
       const bool both = std::holds_alternative<model::PrescribedSpin>(a.law) &&
                         std::holds_alternative<model::PrescribedSpin>(b.law);
-      if (both && a.at.shaft == b.at.shaft && a.at.s == b.at.s &&
-          (a.step.empty() || b.step.empty() || a.step == b.step))
+      const bool one_station = a.at.shaft == b.at.shaft && a.at.s == b.at.s;
+      const bool one_step = a.step.empty() || b.step.empty() || a.step == b.step;
+      if (!both || !one_step) continue;
+      if (one_station)
         report(out, "E26",
                fmt::format("drives '{}' and '{}' both prescribe the spin of one station", a.name,
                            b.name),
                "keep one of the two, or give them different steps", b.where);
+      else if (contradict(m, a, b, out))
+        break;  // one of the two it is at odds with is enough
     }
+  }
 }
 
 /// A transient begins at the speed its drives prescribe: another one given for it contradicts.

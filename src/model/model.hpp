@@ -274,6 +274,7 @@ struct TorqueCurve {
 
 struct PrescribedSpin {
   LawPtr angle;              ///< phi(t) at the station, exact constraint
+  bool of_speed = false;     ///< given as a speed
   bool angle_given = false;  ///< by the deck; else only the speed matters
 };
 struct Drive : Entity {

@@ -209,7 +209,7 @@ TEST(BuildSystem, DrivesOfTheStepOnly) {
   m.shafts[0].spin0 = 12;
   auto up = named<model::Drive>("up", 0.4);
   up.step = "run_up";
-  up.law = model::PrescribedSpin{make_angle_of_speed(make_table({0, 5}, {0, 300}), 0.1)};
+  up.law = model::PrescribedSpin{make_angle_of_speed(make_table({0, 5}, {0, 300}), 0.1), true};
   m.drives = {up};
   const meshes::Mesh mesh = meshes::make_mesh(m);
   const Built other = build_system(m, mesh, "other"), run = build_system(m, mesh, "run_up");

@@ -17,7 +17,7 @@ void describe_speed(Visitor& v, model::Drive& d) {
              "angle at time 0; a step that goes on from another turns on from the angle there");
   d.law = model::PrescribedSpin{};
   if (v.clean() && speed)
-    d.law = model::PrescribedSpin{make_angle_of_speed(speed, angle), angle != 0.0};
+    d.law = model::PrescribedSpin{make_angle_of_speed(speed, angle), true, angle != 0.0};
 }
 
 void describe_angle(Visitor& v, model::Drive& d) {
@@ -26,7 +26,7 @@ void describe_angle(Visitor& v, model::Drive& d) {
       v, required("angle"), angle, "rad",
       "angle of the station against time; held exactly, in a step that goes on from another "
       "from the angle there");
-  d.law = model::PrescribedSpin{angle, true};
+  d.law = model::PrescribedSpin{angle, false, true};
 }
 
 struct SpeedTorque {
