@@ -1,5 +1,6 @@
 // When what [[event]] names happened.
 #include <analysis/transient/event_log.hpp>
+#include <results/speed_level.hpp>
 #include <results/transient_output.hpp>
 
 #include <fmt/format.h>
@@ -8,13 +9,27 @@ namespace whirl::results {
 
 namespace {
 
-std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
+/// g of a level of the reference speed.
+void watch_speed(const TransientSetup& setup, double speed, analysis::EventLog::Watch& w) {
+  const Index node = setup.job.reference();
+  const SpeedLevel level = speed_level(setup.job, speed, setup.law.integrator.tolerance);
+  w.reach = level.reach;
+  w.hold = level.hold;
+  w.g = [node, level](const analysis::Snapshot& s) {
+    return (level.angle ? level.angle->at(s.t()).df : s.node(node).spin()) - level.spin;
+  };
+  // a shaft that turns against the reference passes it from the other side
+  if (setup.job.reference_ratio() < 0.0)
+    w.g = [against = w.g](const analysis::Snapshot& s) { return -against(s); };
+}
+
+std::vector<analysis::EventLog::Watch> watches_of(const TransientSetup& setup) {
+  const run::Job& job = setup.job;
   std::vector<analysis::EventLog::Watch> out;
   for (const model::Event& e : job.model.events) {
     analysis::EventLog::Watch w{e.name, {}, e.direction};
     if (e.kind == model::Event::Kind::speed)
-      w.g = [n = job.reference(), ratio = job.reference_ratio(),
-             x = e.value](const analysis::Snapshot& s) { return s.node(n).spin() / ratio - x; };
+      watch_speed(setup, e.value, w);
     else
       w.g = [p = point_of(job, *e.at), x = e.value](const analysis::Snapshot& s) {
         return analysis::displacement(s, p).tail<2>().norm() - x;
@@ -26,7 +41,7 @@ std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
 
 class EventsOutput final : public TransientOutput {
  public:
-  explicit EventsOutput(const TransientSetup& s) : log_(watches_of(s.job), s.job.reference()) {
+  explicit EventsOutput(const TransientSetup& s) : log_(watches_of(s), s.job.reference()) {
     for (const model::Event& e : s.job.model.events)
       content_ += fmt::format(" {} {} {}", e.name, e.value, e.direction);
   }

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 7\n";
+constexpr std::string_view magic = "whirl checkpoint 8\n";
 
 /// FNV-1a of words of 64 bits, the rest byte by byte: finds a damaged file, not an ill-willed one.
 /// What a word changes in the lower bits alone, the fold after it carries on.

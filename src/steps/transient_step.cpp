@@ -5,6 +5,7 @@
 #include <core/interrupt.hpp>
 #include <results/changing_loads.hpp>
 #include <results/held.hpp>
+#include <results/speed_level.hpp>
 #include <results/support_coefficients.hpp>
 #include <results/transient_output.hpp>
 #include <run/checkpoint.hpp>
@@ -106,17 +107,23 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   for (const assembly::JointResult& j : job.built.joints)
     for (const Index angle : j.angles)
       o.scales.limits.push_back({6 * angle, 1.0});
-  const double ratio = job.reference_ratio();
-  if (law.stop_speed) t.speed_stops.push_back({job.reference(), ratio * *law.stop_speed});
+  const auto speed_stop = [&](double speed) {
+    const results::SpeedLevel x = results::speed_level(job, speed, law.integrator.tolerance);
+    return analysis::SpeedStop{job.reference(), x.spin, x.angle, x.reach, x.hold, {}};
+  };
+  if (law.stop_speed) t.speed_stops.push_back(speed_stop(*law.stop_speed));
   if (law.amplitude_limit < infinity)
     for (const auto& [name, p] : results::watched_points(job))
-      t.amplitude_stops.push_back({p, law.amplitude_limit, name});
-  for (const model::Event& e : job.model.events) {
+      t.amplitude_stops.push_back({p, law.amplitude_limit, name, {}});
+  for (std::size_t k = 0; k < job.model.events.size(); ++k) {
+    const model::Event& e = job.model.events[k];
     if (!e.stop) continue;
-    if (e.kind == model::Event::Kind::speed)
-      t.speed_stops.push_back({job.reference(), ratio * e.value});
-    else
-      t.amplitude_stops.push_back({results::point_of(job, *e.at), e.value, e.name});
+    if (e.kind == model::Event::Kind::speed) {
+      t.speed_stops.push_back(speed_stop(e.value));
+      t.speed_stops.back().event = k;
+    } else {
+      t.amplitude_stops.push_back({results::point_of(job, *e.at), e.value, e.name, k});
+    }
   }
   return t;
 }

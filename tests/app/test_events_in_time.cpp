@@ -280,3 +280,90 @@ TEST(Starts, ShaftsThatTurnTogetherBeginTogetherOrItIsSaid) {
   ASSERT_EQ(together.exit, 0) << together.log;
   EXPECT_FALSE(together.says("meets them with a shock")) << together.log;
 }
+
+namespace {
+
+/// A speed that ends where it stays, of a rotor that whirls.
+std::string ramp_and_hold(const std::string& from, const std::string& to, const std::string& more) {
+  return rotor(
+      "[[unbalance]]\nat = \"d\"\namount = \"2000 g.mm\"\n"
+      "[[drive]]\nat = \"s:start\"\ntype = \"speed\"\nspeed = { type = \"ramp\", "
+      "time = [\"0 s\", \"0.2 s\"], value = [\"" +
+      from + "\", \"" + to + "\"] }\n" + more);
+}
+std::string level(const std::string& value, const std::string& more = {}) {
+  return "[[event]]\nname = \"full\"\ntype = \"speed\"\nvalue = \"" + value + "\"\n" + more;
+}
+const std::string run_on = transient("t", "start = \"static\"\nduration = \"0.3 s\"\n");
+
+/// The time of the only passage.
+double only_passage(const DeckRun& run) {
+  EXPECT_EQ(run.exit, 0) << run.log;
+  EXPECT_EQ(run.summary("t").at("events").number(), 1.0) << run.log;
+  const Columns t = run.csv("t_events.csv");
+  EXPECT_EQ(t.rows.size(), 1u);
+  return t.rows.empty() ? NAN : t.rows[0][t.column("time [s]")];
+}
+
+}  // namespace
+
+// The speed of a node that whirls is within 1e-7 rpm of that of its drive: it passed the level it
+// stays at dozens of times, the first one late; from above it never did.
+TEST(Levels, AreReachedOnceWhereARampEnds) {
+  const DeckRun up(ramp_and_hold("1000 rpm", "3000 rpm", level("3000 rpm") + run_on));
+  EXPECT_NEAR(only_passage(up), 0.2, 1e-7);
+  EXPECT_EQ(up.csv("t_events.csv").rows.size(), 1u);
+  const DeckRun down(ramp_and_hold("3000 rpm", "1000 rpm", level("1000 rpm") + run_on));
+  EXPECT_NEAR(only_passage(down), 0.2, 1e-7);
+  const DeckRun through(ramp_and_hold("1000 rpm", "3000 rpm", level("2000 rpm") + run_on));
+  EXPECT_NEAR(only_passage(through), 0.1, 1e-7);
+}
+
+// It leaves the level again: that is another passage.
+TEST(Levels, AreLeftAfterTheyWereHeld) {
+  const DeckRun run(
+      rotor("[[drive]]\nat = \"s:start\"\ntype = \"speed\"\nspeed = { type = \"ramp\", time = "
+            "[\"0 s\", \"0.1 s\", \"0.2 s\", \"0.3 s\"], value = [\"1000 rpm\", \"3000 rpm\", "
+            "\"3000 rpm\", \"1000 rpm\"] }\n" +
+            level("3000 rpm") + run_on));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns t = run.csv("t_events.csv");
+  ASSERT_EQ(t.rows.size(), 2u);
+  EXPECT_NEAR(t.rows[0][t.column("time [s]")], 0.1, 1e-6);
+  EXPECT_NEAR(t.rows[1][t.column("time [s]")], 0.2, 1e-6);
+}
+
+// An event that ended the run was in no table, as the last step ended a rounding before it.
+TEST(Levels, AStopIsListed) {
+  for (const char* value : {"3000 rpm", "2345 rpm"}) {
+    const DeckRun run(
+        ramp_and_hold("1000 rpm", "3000 rpm", level(value, "stop = true\n") + run_on));
+    EXPECT_TRUE(run.says("stop speed reached")) << run.log;
+    const double end = run.summary("t").at("t_end [s]").number();
+    EXPECT_NEAR(end, 0.2 * (std::stod(value) - 1000) / 2000, 1e-7);
+    EXPECT_NEAR(only_passage(run), end, 1e-9);
+  }
+}
+
+TEST(Levels, StopSpeedsAreThoseOfTheDrive) {
+  const std::string keys = "start = \"static\"\nduration = \"0.3 s\"\nstop_speed = \"3000 rpm\"\n";
+  const DeckRun reached(ramp_and_hold("1000 rpm", "3000 rpm", transient("t", keys)));
+  ASSERT_EQ(reached.exit, 0) << reached.log;
+  EXPECT_NEAR(reached.summary("t").at("t_end [s]").number(), 0.2, 1e-7);
+  // where it is from the start, nothing is reached
+  const DeckRun held(ramp_and_hold("3000 rpm", "3000 rpm", transient("t", keys)));
+  ASSERT_EQ(held.exit, 0) << held.log;
+  EXPECT_EQ(held.summary("t").at("t_end [s]").number(), 0.3) << held.log;
+}
+
+// A governor brings the speed to its target, and what is left of its swing is no passage.
+TEST(Levels, AreReachedOnceByAGovernor) {
+  const DeckRun run(
+      rotor(drive("type = \"torque\"\ntorque = \"0 N.m\"\ngovernor = { target = \"1000 rpm\", kp = "
+                  "\"100 N.m.s/rad\", ki = \"2000 N.m/rad\", max_torque = \"10 kN.m\" }\n") +
+            level("1000 rpm") +
+            transient("t", "start = \"rest\"\ninitial_speed = \"900 rpm\"\nduration = \"4 s\"\n")));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_LE(run.csv("t_events.csv").rows.size(), 3u);
+  EXPECT_GE(run.csv("t_events.csv").rows.size(), 1u);
+}

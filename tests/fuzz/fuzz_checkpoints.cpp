@@ -17,7 +17,7 @@ namespace {
 /// As the program writes it: head, body, check sum of both (src/run/checkpoint.cpp).
 std::string sealed(const std::string& body) {
   constexpr std::uint64_t prime = 1099511628211ull;
-  std::string data = "whirl checkpoint 7\n" + body;
+  std::string data = "whirl checkpoint 8\n" + body;
   std::uint64_t sum = 14695981039346656037ull;
   std::string_view rest = data;
   for (; rest.size() >= sizeof sum; rest.remove_prefix(sizeof sum)) {

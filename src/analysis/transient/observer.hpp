@@ -63,6 +63,11 @@ class Observer {
   /// The initial state, once.
   virtual void begin(const Snapshot& s) { (void)s; }
   virtual void step(StepAccess& s) = 0;
+  /// An event, by its number in the deck, has ended the run.
+  virtual void stopped(const Snapshot& s, std::size_t event) {
+    (void)s;
+    (void)event;
+  }
   virtual void end() {}
   /// What it knows so far, for a checkpoint; restore() of an observer made alike instead of begin()
   /// continues bit for bit.

@@ -1,5 +1,6 @@
 #include <core/contract.hpp>
 #include <analysis/transient/corners.hpp>
+#include <analysis/transient/level_passages.hpp>
 #include <analysis/transient/momentum_route.hpp>
 #include <analysis/transient/transient.hpp>
 
@@ -249,8 +250,11 @@ class Run {
     step_.set(integrator_->time(), integrator_->time());
     for (Observer* o : resume ? options.new_observers : observers)
       o->begin(step_.end());
-    for (const SpeedStop& s : options.speed_stops)
-      speed_before_.push_back(step_.end().node(s.node).spin() - s.speed);
+    for (const SpeedStop& s : options.speed_stops) {
+      speed_stops_.emplace_back(s.reach, s.hold);
+      const double g = beyond(step_.end(), s);
+      speed_stops_.back().begin(g, resume && std::abs(g) > s.reach);
+    }
     // what begins beyond its limit stops at once
     constexpr double just_within = -1e-300;
     for (const AmplitudeStop& s : options.amplitude_stops)
@@ -349,6 +353,9 @@ class Run {
     if (!accepted(report) || !land_on_stop(report)) return false;
     for (Observer* o : observers_)
       o->step(step_);
+    if (stop_ && stopping_event_)
+      for (Observer* o : observers_)
+        o->stopped(step_.end(), *stopping_event_);
     // the state after a corner stands just before it: the matrices of the other side are taken a
     // step later
     if (passed_) integrator_->refresh();
@@ -393,15 +400,33 @@ class Run {
     return displacement(x, s.point).tail<2>().norm() - s.limit;
   }
 
+  /// rad/s, by which a spin is above that of a stop.
+  static double beyond(const Snapshot& x, const SpeedStop& s) {
+    const double spin = s.angle ? s.angle->at(x.t()).df : x.node(s.node).spin();
+    return spin - s.speed;
+  }
+  /// First passage of a speed in the step, or infinity.
+  double first_passage(const SpeedStop& s, LevelPassages& passages) {
+    static constexpr time::EventLocator locator(time::quarters, {1e-18, 1e-14});
+    double first = infinity;
+    passages.search(
+        locator, step_.t0(), step_.t1(), [&](double t) { return beyond(step_.at(t), s); },
+        [&](double t, bool) {
+          // one that turned out to be none of rounding later than its step ends the run now
+          first = t > step_.t0() ? t : step_.t1();
+          return false;
+        });
+    return first;
+  }
   /// First passage of a stop in the step, or infinity; what stopped is in the result.
   double first_stop() {
     double t_stop = infinity;
     for (std::size_t i = 0; i < options_.speed_stops.size(); ++i) {
       const SpeedStop& s = options_.speed_stops[i];
-      auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
-      const double t = crossing(step_, f, speed_before_[i]);
+      const double t = first_passage(s, speed_stops_[i]);
       if (t < t_stop) {
         t_stop = t;
+        stopping_event_ = s.event;
         result_.reason = StopReason::speed_reached;
         result_.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
       }
@@ -412,6 +437,7 @@ class Run {
       const double t = crossing(step_, f, amplitude_before_[i]);
       if (t < t_stop) {
         t_stop = t;
+        stopping_event_ = s.event;
         result_.reason = StopReason::amplitude_limit;
         result_.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
       }
@@ -474,7 +500,9 @@ class Run {
                     last_kept_ = last_checkpoint_;
   StepDense step_;
   Corners corners_;
-  std::vector<double> speed_before_, amplitude_before_;
+  std::vector<LevelPassages> speed_stops_;  ///< one a stop
+  std::vector<double> amplitude_before_;
+  std::optional<std::size_t> stopping_event_;
   bool land_on_corners_ = false;
   bool passed_ = false;  ///< the step before ended on a corner
   bool stop_ = false;

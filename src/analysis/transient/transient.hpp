@@ -5,6 +5,7 @@
 #include <time/integrator.hpp>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,16 @@ namespace whirl::analysis {
 struct SpeedStop {
   Index node = 0;
   double speed = 0;
+  LawPtr angle = {};                      ///< that is prescribed at the node: its rate is the spin
+  double reach = 0, hold = 0;             ///< see LevelPassages
+  std::optional<std::size_t> event = {};  ///< it belongs to, by number
 };
 /// Ends the run when a point's lateral displacement exceeds `limit`, m.
 struct AmplitudeStop {
   Point point;
   double limit = infinity;
   std::string name;
+  std::optional<std::size_t> event = {};  ///< it belongs to, by number
 };
 
 struct Progress {
