@@ -596,6 +596,9 @@ void TransientRun::say_failure(const analysis::TransientResult& r) const {
   const std::string hint =
       !limits.empty() ? "extend the table or write extrapolate = \"hold\", or give the film more "
                         "to carry with"
+      : law_.integrator.dt_min > 0.0
+          ? fmt::format("dt_min = {:.6g} ms allows no shorter step: leave it out",
+                        1e3 * law_.integrator.dt_min)
       : law_.integrator.tolerance < 1e-7
           ? "a tolerance of 1e-7 or more may be above the rounding of this model"
           : "try a smaller tolerance, or look at the state before it in the frames";

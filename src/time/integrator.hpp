@@ -58,7 +58,9 @@ struct Options {
   double dt_fixed =
       0.0;  ///< > 0: equal steps, no longer than this, between breakpoints; 0: adaptive
   double dt_first = 0.0;  ///< 0: chosen
-  double dt_min = 0.0;    ///< 0: 1e-14 of the time reached and never below 1e-300
+  /// Shorter ones only where they end: at a stop, a break, a corner. 0: 1e-14 of the time reached
+  /// and never below 1e-300
+  double dt_min = 0.0;
   double dt_max = infinity;
   std::vector<double>
       breakpoints;  ///< times where data jump: a step lands on each and history is dropped there

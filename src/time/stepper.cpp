@@ -144,7 +144,7 @@ void Stepper::choose_first_step() {
     if (speed > 0.0 && acceleration > 0.0) h = std::min(h, 0.01 * speed / acceleration);
     h = std::max(h, 1e-9 * span);
   }
-  h_next_ = std::min(h, options_.dt_max);
+  h_next_ = std::clamp(h, options_.dt_min, options_.dt_max);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -204,7 +204,9 @@ Stepper::Target Stepper::plan(double h) {
   const double remaining = (target - t0_) - t0_low_;
   if (h >= remaining * (1.0 - landing_slack))
     return {remaining, target, true, h > remaining * (1.0 + landing_slack)};
-  if (h > 0.5 * remaining && options_.dt_fixed <= 0.0) h = 0.5 * remaining;
+  // the rest in two halves, but for one that would be too short
+  const double half = 0.5 * remaining;
+  if (h > half && half >= options_.dt_min && options_.dt_fixed <= 0.0) h = half;
   return {h, t0_ + (h + t0_low_), false, false};
 }
 
@@ -313,8 +315,10 @@ StepReport Stepper::advance() {
   begin_step();
   const bool fixed = options_.dt_fixed > 0.0;
   if (fixed && (!segment_valid_ || segment_k_ >= segment_count_)) plan_segment();
-  double h_wanted = fixed ? (inside_part_ ? h_next_ : segment_step_)
-                          : std::min({h_next_, options_.dt_max, longest_step(options_.paces, t_)});
+  double h_wanted =
+      fixed ? (inside_part_ ? h_next_ : segment_step_)
+            : std::max(std::min({h_next_, options_.dt_max, longest_step(options_.paces, t_)}),
+                       options_.dt_min);
   const double dt_min =
       options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
   retrying_ = false;
@@ -326,6 +330,8 @@ StepReport Stepper::advance() {
     result = attempt_with_recovery(target.h);
     if (result.status == StepStatus::ok && (fixed || result.error <= 1.0)) break;
     h_wanted = shorter_after(result, target.h, report);
+    // the least step itself is tried before it is given up
+    if (target.h > dt_min && !fixed) h_wanted = std::max(h_wanted, dt_min);
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
       return_to_start();
       report.status = result.status;

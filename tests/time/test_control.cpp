@@ -214,6 +214,30 @@ TEST(Control, ImpassableStatesAreReported) {
   }
 }
 
+// Steps began as short as they liked; those that met a rejection went on below the least one.
+TEST(Control, NoStepIsShorterThanTheLeast) {
+  for (const char* name : names)
+    for (const double least : {0.02, 0.1}) {
+      auto p = oscillator(3.0);
+      Options o;
+      o.tolerance = 1e-3;
+      o.dt_min = least;
+      o.t_end = 10.0;
+      auto integrator = make_integrator(name, p, o);
+      integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
+      while (integrator->time() < o.t_end) {
+        const StepReport s = integrator->advance();
+        if (!s.ok()) {  // it may be too long to be right
+          EXPECT_EQ(s.status, StepStatus::error_test) << name;
+          break;
+        }
+        if (s.t1 < o.t_end) {
+          EXPECT_GE(s.t1 - s.t0, least * (1.0 - 1e-9)) << name;
+        }
+      }
+    }
+}
+
 /// Residual with a kink and wrong tangents: Newton fails, also at the smallest step.
 class Lying final : public DenseProblem {
  public:

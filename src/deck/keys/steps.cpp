@@ -61,7 +61,7 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
     if (o.method == methods[k].name) i = static_cast<int>(k);
   v.option("method", i, methods, "integration scheme");
   o.method = methods[i].name;
-  v.number("tolerance", o.tolerance, Range{0, 1, true, true},
+  v.number("tolerance", o.tolerance, between(1e-13, 0.1),
            "accuracy wanted, relative to the peak response of each kind of quantity; in films, to "
            "the clearance where that is less");
   v.number("rho_inf", o.rho_inf, fraction,
@@ -75,8 +75,10 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
       v.quantity(optional("dt", "adaptive"), o.dt, "ms", positive, "fixed time step");
   const bool max =
       v.quantity(optional("dt_max", "no limit"), o.dt_max, "ms", positive, "largest adaptive step");
-  const bool min = v.quantity(optional("dt_min", "no limit"), o.dt_min, "ms", positive,
-                              "smallest adaptive step");
+  const bool min =
+      v.quantity(optional("dt_min", "no limit"), o.dt_min, "ms", positive,
+                 "smallest adaptive step, but for those that end at an instant: a corner of a "
+                 "law or contact, an end, a stop");
   const bool first =
       v.quantity(optional("dt_first", "chosen"), o.dt_first, "ms", positive, "first adaptive step");
   if (v.clean() && fixed && (max || min || first))
@@ -87,6 +89,10 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
             "'dt' fixes the step, so there is nothing to adapt", "leave one of them out");
   if (v.clean() && max && min && o.dt_min > o.dt_max)
     v.error("E26", "dt_min", "'dt_min' is larger than 'dt_max'");
+  if (v.clean() && max && first && o.dt_first > o.dt_max)
+    v.error("E26", "dt_first", "'dt_first' is larger than 'dt_max'");
+  if (v.clean() && min && first && o.dt_first < o.dt_min)
+    v.error("E26", "dt_first", "'dt_first' is smaller than 'dt_min'");
 }
 
 namespace {
