@@ -469,7 +469,13 @@ bool Reader::options(const Key& k, std::vector<std::string>& target,
       good = false;
       continue;
     }
-    words.emplace_back(options[static_cast<std::size_t>(i)].name);
+    const char* word = options[static_cast<std::size_t>(i)].name;
+    if (std::find(words.begin(), words.end(), word) != words.end()) {
+      problem("E26", x.spot, fmt::format("\"{}\" stands twice in '{}'", word, k.name),
+              "once is enough");
+      good = false;
+    }
+    words.emplace_back(word);
     shown.items.push_back(Value::of_text(words.back()));
   }
   if (!good) return true;

@@ -291,6 +291,16 @@ void describe(Visitor& v, model::Probe& p) {
   v.location(required("at"), p.at, place);
   v.quantities(optional("angles", "y and z"), p.angles, "deg", any, -1,
                "directions of the probe, from y towards z");
+  constexpr double same = 1e-9;  // rad, turns apart or not
+  for (std::size_t i = 0; v.clean() && i < p.angles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (std::abs(std::remainder(p.angles[i] - p.angles[j], two_pi)) > same) continue;
+      v.error("E26", "angles",
+              fmt::format("probe '{}' looks twice in one direction: {} and {}", p.name,
+                          units::display(p.angles[j], "deg"), units::display(p.angles[i], "deg")),
+              "once is enough: its columns would have one name");
+      return;
+    }
 }
 
 void describe(Visitor& v, model::InitialMotion& m) {
