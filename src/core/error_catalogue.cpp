@@ -492,7 +492,7 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.", ""},
       {"W02", "a setting without effect",
        "The key is understood but nothing in this deck reads it, for example a VTK output when no "
-       "step is transient.",
+       "step is transient, or the 'start' of a step that goes on from another one.",
        ""},
       {"W03", "outside the range of a theory",
        "The model is computed as asked, but the formulas behind it are known to be inaccurate for "

@@ -224,4 +224,5 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   return out;
 }
 
+  check_speed_window(m, out);
 }  // namespace whirl::deck

@@ -52,5 +52,7 @@ void check_undeformed(const model::Model& m, Problems& out);
 void check_beginnings(const model::Model& m, Problems& out);
 /// Windows of time in which no step runs: nothing would be written.
 void check_windows(const model::Model& m, Problems& out);
+/// Windows of speed that no step passes through.
+void check_speed_window(const model::Model& m, Problems& out);
 
 }  // namespace whirl::deck

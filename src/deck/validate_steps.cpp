@@ -338,6 +338,37 @@ void check_clamps(const model::Model& m, Problems& out) {
   }
 }
 
+namespace {
+
+/// The step named by 'from'; null: none.
+const model::Step* earlier_step(const model::Model& m, const model::Step& s) {
+  const auto is_it = [&](const model::Step& x) { return !s.from.empty() && x.name == s.from; };
+  const auto found = std::find_if(m.steps.begin(), m.steps.end(), is_it);
+  return found == m.steps.end() ? nullptr : &*found;
+}
+
+/// Where a step goes on from a state there is none to choose.
+void warn_of_ignored_starts(const model::Model& m, Problems& out) {
+  using Start = model::TransientStep::Start;
+  for (const model::Step& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || t->start == Start::static_equilibrium) continue;
+    const model::Step* earlier = earlier_step(m, s);
+    const bool of_equilibrium = earlier && std::holds_alternative<model::StaticStep>(earlier->law);
+    // an equilibrium has a response and modes about it
+    if (of_equilibrium && t->start != Start::rest) continue;
+    if (!earlier && t->previous.empty()) continue;
+    report(out, "W02",
+           fmt::format("'start' of step '{}' has no effect: it begins from {}", s.name,
+                       earlier ? fmt::format("the state of step '{}'", s.from)
+                               : fmt::format("the end of the run in '{}'", t->previous)),
+           earlier ? "leave out 'start' or 'from'" : "leave out 'start' or 'previous'", s.where,
+           Diagnostic::Severity::warning);
+  }
+}
+
+}  // namespace
+
 /// A step begins where one other motion ended.
 void check_beginnings(const model::Model& m, Problems& out) {
   for (const model::Step& s : m.steps) {
@@ -348,6 +379,7 @@ void check_beginnings(const model::Model& m, Problems& out) {
                          s.name, s.from, t->previous),
              "leave out 'from' or 'previous'", s.where);
   }
+  warn_of_ignored_starts(m, out);
 }
 
 /// Windows of time in which no step runs: nothing would be written.
@@ -400,6 +432,53 @@ void check_windows(const model::Model& m, Problems& out) {
         where);
   for (const model::VtkOutput& v : m.output.vtk)
     check(v.t0, v.t1, v.step, "[[output.vtk]]", "no frame would be written", v.where);
+}
+
+namespace {
+
+/// Least and largest reference speed of a transient, where a drive prescribes it.
+std::optional<std::pair<double, double>> driven_speeds(const model::Model& m,
+                                                       const model::Step& s) {
+  const model::Drive* first = nullptr;
+  for (const model::Drive& d : m.drives) {
+    if (!d.step.empty() && d.step != s.name) continue;
+    const bool counts = m.shafts[d.at.shaft].speed_ratio == 1.0;
+    if (!first || (counts && m.shafts[first->at.shaft].speed_ratio != 1.0)) first = &d;
+  }
+  const auto* spin = first ? std::get_if<model::PrescribedSpin>(&first->law) : nullptr;
+  if (!spin || !spin->angle) return std::nullopt;
+  const double ratio = m.shafts[first->at.shaft].speed_ratio;
+  const auto range = speeds_of(m, s, first->at.shaft);
+  if (!range || ratio == 0.0) return std::nullopt;
+  return std::minmax(range->first / ratio, range->second / ratio);
+}
+
+}  // namespace
+
+/// A window of speeds that no transient passes through: nothing would be written.
+void check_speed_window(const model::Model& m, Problems& out) {
+  const double low = m.output.speed_low, high = m.output.speed_high;
+  if (low == -infinity && high == infinity) return;
+  double least = infinity, most = -infinity;
+  Where where;
+  for (const model::Step& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t) continue;
+    const model::Step* earlier = earlier_step(m, s);
+    const bool later = earlier && std::holds_alternative<model::TransientStep>(earlier->law);
+    const auto range = later || !t->previous.empty() ? std::nullopt : driven_speeds(m, s);
+    if (!range) return;  // known to the run alone
+    least = std::min(least, range->first);
+    most = std::max(most, range->second);
+    where = s.where;
+  }
+  if (!(most >= least) || (low <= most && high >= least)) return;
+  report(out, "W02",
+         fmt::format("speed_window of [output] from {} to {} holds nothing: transient steps run "
+                     "from {} to {}",
+                     units::display(low, "rpm"), units::display(high, "rpm"),
+                     units::display(least, "rpm"), units::display(most, "rpm")),
+         "no row of the histories would be written", where, Diagnostic::Severity::warning);
 }
 
 namespace {

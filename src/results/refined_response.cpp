@@ -97,6 +97,14 @@ PeakError peak_error(double at, double amplification, const std::function<double
   return e;
 }
 
+bool is_rounding(const run::Job& job, double amplitude) {
+  constexpr double rounding = 1e-13;  // of the length of a shaft, a few hundred last digits
+  double length = 0;
+  for (const meshes::Line& line : job.mesh.lines)
+    length = std::max(length, line.length);
+  return !(amplitude > rounding * length);
+}
+
 void AmplitudeAccuracy::add(double error, const std::string& name) {
   looked_ = true;
   if (std::isnan(error)) {

@@ -466,7 +466,8 @@ BothSpins HarmonicRun::options_on(const results::RefinedModel& refined) const {
 std::vector<double> HarmonicRun::judge_amplitudes(const std::vector<Found>& peaks) {
   std::vector<double> out(peaks.size(), nan);
   const double most = twists_ ? largest_twist_ : largest_;
-  if (job_.mesh.elements.empty() || !(most > 0) || !std::isfinite(most)) return out;
+  if (job_.mesh.elements.empty() || results::is_rounding(job_, most) || !std::isfinite(most))
+    return out;
   results::AmplitudeAccuracy accuracy(
       s_, peaks.empty() ? "largest amplitude" : "amplitudes of the peaks");
   const run::PhaseTimer timer(job_, "accuracy of the mesh");

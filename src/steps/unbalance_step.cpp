@@ -377,7 +377,7 @@ std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
                                                  const std::vector<analysis::ResponsePeak>& peaks,
                                                  const Largest& largest) {
   std::vector<results::PeakError> out(peaks.size());
-  if (s.job.mesh.elements.empty() || !(largest.amplitude > 0)) return out;
+  if (s.job.mesh.elements.empty() || results::is_rounding(s.job, largest.amplitude)) return out;
   results::AmplitudeAccuracy accuracy(
       s, peaks.empty() ? "largest amplitude" : "amplitudes of the peaks");
   const run::PhaseTimer timer(s.job, "accuracy of the mesh");

@@ -131,3 +131,12 @@ TEST(Standstill, AStillTorqueIsSharedByInertia) {
       EXPECT_TRUE(std::isnan(twist) || twist > 1e6) << what;
     }
 }
+
+// The error of nothing was told as that of the elements.
+TEST(Standstill, NoResponseHasNoError) {
+  const DeckRun run(
+      rotor(damped, "type = \"unbalance_response\"\nspeed = { values = [\"0 rpm\"] }\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_FALSE(run.says("the mesh is too coarse")) << run.log;
+  EXPECT_FALSE(run.says("W10")) << run.log;
+}
