@@ -1,4 +1,5 @@
 #include <app/commands.hpp>
+#include <run/checkpoint.hpp>
 #include <run/diagnose.hpp>
 #include <run/memory_limit.hpp>
 #include <steps/prepare.hpp>
@@ -158,6 +159,7 @@ meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
   if (d.model.steps.empty()) return mesh;
   run.variant = variants_of(o.deck, o.read);
   run.build = builds_of(o.deck, o.read);
+  run::states_to_keep(d.model, d.model.output.directory);
   steps::check_steps(d.model, mesh, run);
   return mesh;
 }

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <sstream>
 
 namespace whirl::run {
@@ -275,32 +276,67 @@ void put_back(const UsableCheckpoint& c, const fs::path& file) {
   if (!c.earlier.empty()) io::rename_into_place(c.earlier, file);
 }
 
+namespace {
+
+struct Difference {
+  std::string head, now, then;
+
+  std::string text() const { return fmt::format("{}now '{}', then '{}'", head, now, then); }
+};
+
+/// The first line that differs, and the table it stands in.
+std::optional<Difference> first_difference(const std::string& then, const std::string& now) {
+  if (then == now) return std::nullopt;
+  std::istringstream a(then), b(now);
+  Difference d;
+  for (;;) {
+    const bool more_then = static_cast<bool>(std::getline(a, d.then));
+    const bool more_now = static_cast<bool>(std::getline(b, d.now));
+    if (!more_then) d.then = "(nothing)";
+    if (!more_now) d.now = "(nothing)";
+    if (!more_then || !more_now || d.then != d.now) return d;
+    if (d.now.starts_with('[')) d.head = d.now + " ";
+  }
+}
+
+/// Of a resolved deck the tables of what has mass and stiffness.
+std::string rotor_tables(const std::string& deck) {
+  constexpr std::string_view tables[]{"material", "shaft", "disk",      "bearing",
+                                      "joint",    "crack", "foundation"};
+  std::istringstream in(deck);
+  std::string line, out;
+  bool inside = false;
+  while (std::getline(in, line)) {
+    if (line.starts_with('[')) {
+      const std::size_t begin = line.find_first_not_of('[');
+      const std::size_t end = line.find_first_of(".]", begin);
+      const std::string_view table = std::string_view(line).substr(begin, end - begin);
+      inside = std::find(std::begin(tables), std::end(tables), table) != std::end(tables);
+    }
+    if (inside && !line.empty()) out += line + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string other_rotor(const Checkpoint& c, const model::Model& model) {
+  const auto d = first_difference(rotor_tables(c.deck), rotor_tables(model.moving.machine));
+  return d ? d->text() : std::string();
+}
+
 void check_checkpoints(const fs::path& results, const model::Model& model) {
   for (const model::Step& s : model.steps) {
     const auto found = usable_checkpoint(checkpoint_file(results, s.name));
     if (!found) continue;
-    const std::string& then = found->checkpoint.deck;
-    const std::string now = what_moves(model, s.name);
-    if (then == now) continue;
-    std::istringstream a(then), b(now);
-    std::string old_line, new_line;
-    int table = 0;
-    std::string head;
-    for (;; ++table) {
-      const bool more_a = static_cast<bool>(std::getline(a, old_line)),
-                 more_b = static_cast<bool>(std::getline(b, new_line));
-      if (!more_a) old_line = "(nothing)";
-      if (!more_b) new_line = "(nothing)";
-      if (!more_a || !more_b || old_line != new_line) break;
-      if (new_line.starts_with('[')) head = new_line + " ";
-    }
+    const auto difference = first_difference(found->checkpoint.deck, what_moves(model, s.name));
+    if (!difference) continue;
     throw Error(
         Exit::deck,
         Diagnostic{
             Diagnostic::Severity::error, "E94",
-            fmt::format(
-                "the model is not the one of the checkpoint of step '{}': {}now '{}', then '{}'",
-                s.name, head, new_line, old_line),
+            fmt::format("the model is not the one of the checkpoint of step '{}': {}", s.name,
+                        difference->text()),
             "a resumed run may change outputs, probes, duration and stop conditions; for another "
             "model start anew, without --resume",
             Where{model.deck_path, 0, 0, 0, {}}});

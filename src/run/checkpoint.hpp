@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace whirl::run {
 
@@ -92,6 +93,16 @@ void put_back(const UsableCheckpoint& c, const std::filesystem::path& file);
 /// The state in which a transient step of another results folder ended (step: "" = its only one).
 /// @throws Error (E91): there is none, or several.
 Checkpoint last_state_of(const std::string& folder, const std::string& step);
+/// Whether a folder that a step goes on from is the results folder of this run.
+bool is_results_folder(const std::string& previous, const std::filesystem::path& results);
+/// Names of the checkpoints in the results folder that steps of this run go on from, and that stand
+/// there before it begins. Those of other folders are looked at too.
+/// @throws Error (E91): one cannot be read; (E26): the run would write another one over it.
+std::vector<std::string> states_to_keep(const model::Model& model,
+                                        const std::filesystem::path& results);
+/// How the rotor of a checkpoint differs from that of the model, in the first line of the resolved
+/// deck that does; empty: they are one. Drives, loads and unbalance may change between runs.
+std::string other_rotor(const Checkpoint& c, const model::Model& model);
 /// deck: for the message.
 /// @throws Error (E94): the state is one of another mesh.
 void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,

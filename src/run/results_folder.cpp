@@ -12,7 +12,9 @@
 #include <unistd.h>
 #include <cerrno>
 #include <io/value.hpp>
+#include <algorithm>
 #include <new>
+#include <vector>
 #include <system_error>
 
 namespace whirl::run {
@@ -84,8 +86,14 @@ std::filesystem::path prepare_results(const model::Model& model, const RunOption
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   check_space(model, options);
   if (!options.only_files.empty()) return root;
+  // before anything is removed: what they go on from may stand in this folder
+  std::vector<std::string> kept;
+  if (!options.resume) kept = states_to_keep(model, root);
   const io::ResultsFolder folder(root);
-  if (!options.resume) folder.remove(is_of_one_run);
+  if (!options.resume)
+    folder.remove([&](const std::string& name) {
+      return is_of_one_run(name) && std::find(kept.begin(), kept.end(), name) == kept.end();
+    });
   folder.write_text("resolved.toml", model.resolved);
   io::Value run = io::Value::object();
   run["program"] = "whirl " + version();

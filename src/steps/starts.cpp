@@ -2,6 +2,7 @@
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
 #include <results/frequency.hpp>
+#include <results/transient_output.hpp>
 #include <run/checkpoint.hpp>
 #include <run/job.hpp>
 #include <steps/starts.hpp>
@@ -205,10 +206,16 @@ void restore_drives(InArchive& in, run::StepState& start) {
   }
 }
 
-run::StepState start_of_other_run(const run::Job& job, const std::string& folder,
+run::StepState start_of_other_run(run::Job& job, const model::Step& own, const std::string& folder,
                                   const std::string& step) {
   const run::Checkpoint c = run::last_state_of(folder, step);
   run::check_state_fits(c, folder, job.system(), job.model.deck_path);
+  if (const std::string difference = run::other_rotor(c, job.model); !difference.empty())
+    results::warn_of_step(
+        job, own,
+        fmt::format("the run in '{}' is one of another rotor: {}; the state it ended in is no "
+                    "motion of this one",
+                    folder, difference));
   run::StepState start{c.state, c.speed, {}};
   start.state.frames.hold_kept(start.state.t);
   if (const auto drives = c.parts.find({run::Part::drives}); drives != c.parts.end()) {

@@ -24,7 +24,7 @@ void begin_drives(const run::Job&, run::StepState& start, Beginning);
 void save_drives(OutArchive& out, const run::StepState& start);
 void restore_drives(InArchive& in, run::StepState& start);
 /// The last state of a transient step in another results folder.
-run::StepState start_of_other_run(const run::Job&, const std::string& folder,
+run::StepState start_of_other_run(run::Job&, const model::Step&, const std::string& folder,
                                   const std::string& step);
 
 }  // namespace whirl::steps

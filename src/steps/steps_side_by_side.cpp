@@ -2,6 +2,7 @@
 #include <core/interrupt.hpp>
 #include <core/parallel.hpp>
 #include <io/file.hpp>
+#include <run/checkpoint.hpp>
 #include <run/interrupt.hpp>
 #include <run/memory_limit.hpp>
 
@@ -18,11 +19,7 @@ namespace {
 bool reads_results(const model::Step& step, const std::filesystem::path& results) {
   const auto* law = std::get_if<model::TransientStep>(&step.law);
   if (law == nullptr || law->previous.empty()) return false;
-  std::error_code ec;
-  const auto whole = [&ec](const std::filesystem::path& p) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(p, ec), ec);
-  };
-  return ec || whole(law->previous) == whole(results);
+  return run::is_results_folder(law->previous, results);
 }
 
 /// Fatigue is counted in the transients that a report on torsion names.

@@ -206,7 +206,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
                                const model::TransientStep& law) {
   const bool other_run = !law.previous.empty();
   const auto speed = job.goes_on_in_motion(step) ? std::nullopt : law.own_speed();
-  run::StepState start = other_run ? start_of_other_run(job, law.previous, law.previous_step)
+  run::StepState start = other_run ? start_of_other_run(job, step, law.previous, law.previous_step)
                                    : job.start_of(step, speed);
   const Beginning beginning = beginning_of(job, step, law);
   begin_drives(job, start, beginning);

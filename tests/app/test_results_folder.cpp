@@ -155,6 +155,58 @@ TEST_F(ResultsFolder, PicturesOfEarlierRunsGo) {
   EXPECT_TRUE(fs::exists("r/plots/r_Q_bode.svg"));
 }
 
+// The state that a step goes on from was removed before it was read.
+TEST_F(ResultsFolder, AStateInTheFolderIsKeptForTheStepThatNeedsIt) {
+  write("a.toml", moving("0.01 s", "checkpoint = \"1 s\"\n"));
+  ASSERT_EQ(run({"a.toml", "-o", "r"}), 0) << read("log.txt");
+  const std::string state = read("r/checkpoint/m.whirl");
+  ASSERT_FALSE(state.empty());
+  const std::string motion_on =
+      "[[step]]\nname = \"n\"\ntype = \"transient\"\nduration = \"0.01 s\"\nprevious = "
+      "\"r\"\nprevious_step = \"m\"\n";
+  write("b.toml", deck(motion_on));
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(run({"b.toml", "-o", "r"}), 0) << read("log.txt");
+    EXPECT_EQ(read("r/checkpoint/m.whirl"), state);
+  }
+  // a step of that name would write its own state over it
+  std::string same = motion_on;
+  same.replace(same.find("\"n\""), 3, "\"m\"");
+  write("c.toml", deck(same));
+  EXPECT_EQ(run({"c.toml", "-o", "r"}), 3) << read("log.txt");
+  EXPECT_EQ(read("r/checkpoint/m.whirl"), state);
+  EXPECT_EQ(run({"c.toml", "-o", "s"}), 0) << read("log.txt");
+}
+
+TEST_F(ResultsFolder, AnEarlierRunIsAskedForAStepItHas) {
+  write("a.toml", moving("0.01 s", "checkpoint = \"1 s\"\n"));
+  ASSERT_EQ(run({"a.toml", "-o", "r"}), 0) << read("log.txt");
+  std::string on = moving("0.01 s", "previous = \"r\"\nprevious_step = \"zzz\"\n");
+  write("b.toml", on);
+  EXPECT_EQ(run({"b.toml", "-o", "s"}), 5) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("the run in 'r' has no state of a step 'zzz': it has that of 'm'"),
+            std::string::npos)
+      << read("log.txt");
+}
+
+// A state was taken over by a rotor of another mass without a word.
+TEST_F(ResultsFolder, AStateOfAnotherRotorIsToldOf) {
+  write("a.toml", moving("0.01 s", "checkpoint = \"1 s\"\n"));
+  ASSERT_EQ(run({"a.toml", "-o", "r"}), 0) << read("log.txt");
+  std::string same = moving("0.01 s", "previous = \"r\"\n");
+  same.replace(same.find("60 g.mm"), 7, "90 g.mm");
+  write("b.toml", same);
+  EXPECT_EQ(run({"b.toml", "-o", "s"}), 0) << read("log.txt");
+  EXPECT_EQ(read("log.txt").find("another rotor"), std::string::npos) << read("log.txt");
+  same.replace(same.find("mass = \"3 kg\""), 13, "mass = \"4 kg\"");
+  write("c.toml", same);
+  EXPECT_EQ(run({"c.toml", "-o", "s"}), 0) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("one of another rotor: [[disk]] now 'mass = \"4 kg\"', then "
+                                 "'mass = \"3 kg\"'"),
+            std::string::npos)
+      << read("log.txt");
+}
+
 TEST_F(ResultsFolder, NothingIsReachedThroughASymbolicLink) {
   write("d.toml", deck(response));
   write("elsewhere/mine.svg", "mine");
