@@ -233,6 +233,9 @@ int run_command(const RunCommand& o) {
   run::RunOptions run = o.run;
   run.variant = variants_of(o.deck, o.read);
   run.build = builds_of(o.deck, o.read);
+  // the first one is the deck itself, which a run may stand beside
+  for (int i = 1; i < d.sources.size(); ++i)
+    run.inputs.emplace_back(d.sources[i].name);
   return steps::run_deck(d.model, run);
 }
 

@@ -118,6 +118,22 @@ bool Manifest::lists(std::string_view name) const {
   return names_.count(std::string(name)) != 0;
 }
 
+void Manifest::protect(const std::vector<fs::path>& inputs) {
+  const std::lock_guard lock(mutex_);
+  for (const fs::path& file : inputs) {
+    std::error_code ec;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(file, ec), ec);
+    if (!ec) inputs_.push_back(whole);
+  }
+}
+
+bool Manifest::is_read(const fs::path& file) const {
+  if (inputs_.empty()) return false;
+  std::error_code ec;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(file, ec), ec);
+  return !ec && std::find(inputs_.begin(), inputs_.end(), whole) != inputs_.end();
+}
+
 void Manifest::list_nothing() {
   const std::lock_guard lock(mutex_);
   listing_ = false;
@@ -139,8 +155,18 @@ void Manifest::claim(std::string_view given, const std::string& owner) {
   if (!inside(name))
     io_failure(root_ / name,
                "nothing is written through a symbolic link, or outside the results folder:");
-  if (names_.count(name)) return;
   const fs::path file = root_ / name;
+  if (is_read(file))
+    throw Error(
+        Exit::io,
+        Diagnostic{Diagnostic::Severity::error,
+                   "E91",
+                   fmt::format("results would replace '{}', which the deck reads", file.string()),
+                   "write into another folder (-o, output.directory), or give the step "
+                   "another name",
+                   {}});
+  claimed_.insert(name);
+  if (names_.count(name)) return;
   const bool folder = [&] {
     std::error_code ec;
     return fs::symlink_status(file, ec).type() == fs::file_type::directory;
@@ -159,6 +185,10 @@ void Manifest::remove(const std::function<bool(const std::string&)>& which) cons
     std::error_code ec;
     fs::remove(file, ec);
   }
+}
+
+void Manifest::remove_unclaimed(const std::function<bool(const std::string&)>& which) const {
+  remove([&](const std::string& name) { return claimed_.count(name) == 0 && which(name); });
 }
 
 void Manifest::remove_of(const std::string& owner) const {

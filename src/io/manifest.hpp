@@ -9,6 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 namespace whirl::io {
 
@@ -28,21 +29,28 @@ class Manifest {
   /// @throws Error (E16) when another owner of this run has written it; owner: who writes, empty: nobody
   /// that could meet another.
   void claim(std::string_view name, const std::string& owner = {});
+  /// Files that this run reads: none of them is claimed.
+  void protect(const std::vector<std::filesystem::path>& inputs);
   /// From now on nothing is listed: of a folder that is thrown away.
   void list_nothing();
   bool lists(std::string_view name) const;
   /// Removes the listed regular files that `which` accepts. Their names stay listed.
   void remove(const std::function<bool(const std::string& name)>& which) const;
+  /// Removes the listed regular files that `which` accepts and nobody has claimed in this run.
+  void remove_unclaimed(const std::function<bool(const std::string& name)>& which) const;
   /// Removes the regular files that this owner has claimed. Their names stay listed.
   void remove_of(const std::string& owner) const;
 
  private:
   bool inside(const std::string& name) const;
+  bool is_read(const std::filesystem::path& file) const;
   void append(const std::string& line);
 
   std::filesystem::path root_;
   mutable std::mutex mutex_;  ///< of what follows
   std::unordered_set<std::string> names_;
+  std::unordered_set<std::string> claimed_;             ///< in this run
+  std::vector<std::filesystem::path> inputs_;           ///< in the folder, without links
   std::unordered_map<std::string, std::string> owner_;  ///< of files written in this run
   bool older_ = false;                                  ///< results of a program that kept no list
   bool listing_ = true;

@@ -26,6 +26,7 @@ Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path
       scene(meshes::make_scene(m, mesh)),
       folder(root) {
   if (!options.only_files.empty()) folder.write_only(options.only_files);
+  folder.protect(options.inputs);
   folder.show_tables_to(options.seen_table);
 }
 

@@ -21,6 +21,7 @@ struct RunOptions {
   double max_memory = 0;         ///< bytes a run may take; 0: what is available; infinite: any
   double max_disk = 0;           ///< bytes its output may take; 0: what is free
   std::filesystem::path output;  ///< results folder; empty: as the deck says
+  std::vector<std::filesystem::path> inputs;  ///< files the deck reads: no results replace them
   /// Texts and tables that are written ("STEP_modes.csv"), into a folder of this run alone from which
   /// they are read at once; empty: everything, into a folder that is kept.
   std::vector<std::string> only_files;

@@ -7,7 +7,9 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <sha2.h>
+#include <core/text.hpp>
 #include <io/file.hpp>
+#include <io/json.hpp>
 #include <io/results.hpp>
 #include <unistd.h>
 #include <cerrno>
@@ -81,6 +83,36 @@ void check_space(const model::Model& model, const RunOptions& options) {
              stderr);
 }
 
+std::vector<std::string> steps_of_earlier_run(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "summary.json";
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec)) return {};
+  std::vector<std::string> names;
+  try {
+    const io::Value summary = io::parse_json(io::read_text(file), file.string());
+    if (summary.is_object() && summary.at("steps").is_object())
+      for (const auto& [name, of_step] : summary.at("steps").members())
+        names.push_back(name);
+  } catch (const Error&) {
+    // cut off or somebody else's: nothing is known of what that run left
+  }
+  return names;
+}
+
+void remove_stale_tables(const io::ResultsFolder& folder, const std::vector<std::string>& steps) {
+  const auto is_of_step = [&](const std::string& name) {
+    return std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
+      const std::string begin = safe_stem(step);
+      return name.starts_with(begin + "_") || name.starts_with(begin + ".");
+    });
+  };
+  folder.remove_unclaimed([&](const std::string& name) {
+    const bool table = name.ends_with(".csv") || name.ends_with(".h5");
+    const bool own = name.find('/') == std::string::npos;
+    return table && own && is_of_step(name);
+  });
+}
+
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options) {
   const std::filesystem::path root =
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
@@ -89,7 +121,8 @@ std::filesystem::path prepare_results(const model::Model& model, const RunOption
   // before anything is removed: what they go on from may stand in this folder
   std::vector<std::string> kept;
   if (!options.resume) kept = states_to_keep(model, root);
-  const io::ResultsFolder folder(root);
+  io::ResultsFolder folder(root);
+  folder.protect(options.inputs);
   if (!options.resume)
     folder.remove([&](const std::string& name) {
       return is_of_one_run(name) && std::find(kept.begin(), kept.end(), name) == kept.end();

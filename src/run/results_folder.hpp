@@ -3,6 +3,7 @@
 #include <run/options.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace whirl::run {
 
@@ -16,6 +17,13 @@ namespace whirl::run {
 /// @throws Error (Exit::io) when writing fails; (Exit::deck, E33) when the output would not fit on
 /// its disk.
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options);
+
+/// Names of the steps whose results an earlier run left in a folder; none where it left no summary.
+std::vector<std::string> steps_of_earlier_run(const std::filesystem::path& folder);
+
+/// Removes tables and series of these steps that this run has not written: those of a deck that has
+/// changed would stand among its own.
+void remove_stale_tables(const io::ResultsFolder& folder, const std::vector<std::string>& steps);
 
 /// @throws Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need
 /// not be there yet, or would take more than RunOptions::max_disk.

@@ -10,10 +10,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace whirl::steps {
+
+namespace {
+
+/// A run that goes on from one whose results stand in the folder adds to them.
+bool goes_on_in(const std::filesystem::path& folder, const model::Model& model) {
+  return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    return t && !t->previous.empty() && run::is_results_folder(t->previous, folder);
+  });
+}
+
+}  // namespace
 
 int run_deck(const model::Model& model, const run::RunOptions& options) {
   run::install_interrupt_handlers();
@@ -29,9 +44,13 @@ int run_deck(const model::Model& model, const run::RunOptions& options) {
                      .c_str(),
                  stderr);
   }
+  std::vector<std::string> earlier;
+  const bool alone = options.only_files.empty() && !options.resume;
+  if (alone && !goes_on_in(folder, model)) earlier = run::steps_of_earlier_run(folder);
   const auto root = run::prepare_results(model, options);
   run::Job job(model, options, root);
   run_steps(job);
+  if (!run::interrupted()) run::remove_stale_tables(job.folder, earlier);
   if (options.json)
     std::fputs(io::to_json(job.summary).c_str(), stdout);
   else if (!options.quiet)

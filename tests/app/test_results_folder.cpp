@@ -155,6 +155,41 @@ TEST_F(ResultsFolder, PicturesOfEarlierRunsGo) {
   EXPECT_TRUE(fs::exists("r/plots/r_Q_bode.svg"));
 }
 
+// A table of a step that the deck has no more stood beside those of this run.
+TEST_F(ResultsFolder, TablesOfEarlierRunsGo) {
+  write("d.toml", deck(response));
+  ASSERT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
+  ASSERT_TRUE(fs::exists("r/r_response.csv"));
+  write("r/r_mine.csv", "mine");
+  std::string other = response;
+  other.replace(other.find("\"r\""), 3, "\"q\"");
+  write("d.toml", deck(other));
+  ASSERT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
+  EXPECT_TRUE(fs::exists("r/q_response.csv"));
+  EXPECT_FALSE(fs::exists("r/r_response.csv"));
+  EXPECT_EQ(read("r/r_mine.csv"), "mine");
+}
+
+// A law of time was moved aside for the histories of the step of its name.
+TEST_F(ResultsFolder, WhatTheDeckReadsIsNotReplaced) {
+  const std::string law = "time[s],value[rpm]\n0,1000\n1,2000\n";
+  write("m.csv", law);
+  write("d.toml", moving("0.01 s",
+                         "[[drive]]\nat = \"left:start\"\ntype = \"speed\"\nspeed = { type = "
+                         "\"table\", file = \"m.csv\" }\n"));
+  std::string text = read("d.toml");
+  const std::string speed = "initial_speed = \"1000 rpm\"\n";
+  text.erase(text.find(speed), speed.size());
+  write("d.toml", text);
+  EXPECT_EQ(run({"d.toml", "-o", "."}), 5) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("results would replace './m.csv', which the deck reads"),
+            std::string::npos)
+      << read("log.txt");
+  EXPECT_EQ(read("m.csv"), law);
+  EXPECT_FALSE(fs::exists("m.csv.kept"));
+  EXPECT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
+}
+
 // The state that a step goes on from was removed before it was read.
 TEST_F(ResultsFolder, AStateInTheFolderIsKeptForTheStepThatNeedsIt) {
   write("a.toml", moving("0.01 s", "checkpoint = \"1 s\"\n"));
@@ -168,6 +203,7 @@ TEST_F(ResultsFolder, AStateInTheFolderIsKeptForTheStepThatNeedsIt) {
   for (int again = 0; again < 2; ++again) {
     EXPECT_EQ(run({"b.toml", "-o", "r"}), 0) << read("log.txt");
     EXPECT_EQ(read("r/checkpoint/m.whirl"), state);
+    EXPECT_TRUE(fs::exists("r/m.csv"));
   }
   // a step of that name would write its own state over it
   std::string same = motion_on;
