@@ -622,9 +622,10 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"W18", "masses that the base does not shake",
        "The deck shakes its base, and has a foundation with internal coordinates that carry mass. "
        "Its matrices do not say which way an internal coordinate moves (a modal coordinate moves "
-       "no one way), so the acceleration of the base has no force on it: the motion of the "
-       "foundation, and with it of the rotor, is smaller than it would be. The masses at the "
-       "support points are shaken.",
+       "no one way), so the acceleration of the base has no force on its own mass: the motion of "
+       "the foundation, and with it of the rotor, is smaller than it would be. The masses at the "
+       "support points are shaken, and those that couple them with internal coordinates act on "
+       "these.",
        ""},
       {"W19", "a material unlike any",
        "The modulus or the density of a material is no metal's, but would be one's in another "

@@ -171,6 +171,11 @@ double text_width(std::string_view s, double size) {
   return w * size / 1000;
 }
 
+std::string with_article(std::string_view noun) {
+  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != noun.npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
+}
+
 std::string safe_name(std::string_view name) {
   std::string s;
   for (const char c : name) {

@@ -24,6 +24,8 @@ double text_width(std::string_view utf8, double font_size);
 std::string safe_name(std::string_view name);
 /// The same without '.', for what an extension follows.
 std::string safe_stem(std::string_view name);
+/// "a disk", "an unbalance"
+std::string with_article(std::string_view noun);
 std::string base64(std::string_view bytes);
 
 }  // namespace whirl

@@ -3,6 +3,7 @@
 #include <deck/materials.hpp>
 #include <deck/reader.hpp>
 #include <algorithm>
+#include <core/text.hpp>
 #include <fmt/format.h>
 
 namespace whirl::deck {
@@ -47,7 +48,7 @@ bool Reader::name(model::Entity& entity, const char* kind) {
             "a name may not contain : / + \" or \\");
   const auto [it, fresh] = names.emplace(name, spot);
   if (!fresh)
-    problem("E16", spot, fmt::format("a {} '{}' exists already", kind, name),
+    problem("E16", spot, fmt::format("{} '{}' exists already", with_article(kind), name),
             fmt::format("the first is in line {}", it->second.line));
   entity.name = name;
   entity.where = where();

@@ -1,5 +1,7 @@
 #include <deck/validate_parts.hpp>
 
+#include <core/text.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +19,8 @@ namespace {
 void check_places(const model::Model& m, Problems& out) {
   const auto on_shaft = [&](const model::Location& at, const char* what) {
     if (at.housing >= 0)
-      report(out, "E26", fmt::format("a {} cannot stand on the support of a bearing", what),
+      report(out, "E26",
+             fmt::format("{} cannot stand on the support of a bearing", with_article(what)),
              "only probes and loads can", at.where);
   };
   for (const auto& d : m.disks)
@@ -98,9 +101,10 @@ void check_shaken_foundations(const model::Model& m, Problems& out) {
     }
     if (names.empty()) continue;
     report(out, "W18",
-           fmt::format("the acceleration of the base acts on the support points of foundation "
-                       "'{}', not on its "
-                       "internal coordinates {}: which way they move is not known",
+           fmt::format("the acceleration of the base acts on foundation '{}' where it carries its "
+                       "bearings, and through the couplings of its mass matrix; on the masses of "
+                       "its internal coordinates {} it does not act: which way they move is not "
+                       "known",
                        f.name, names),
            "a lumped mass of its own as a pedestal, or as a shaft that does not turn, is shaken "
            "with the rest",
@@ -220,9 +224,9 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_undeformed(m, out);
   check_beginnings(m, out);
   check_windows(m, out);
+  check_speed_window(m, out);
   check_effects(m, out);
   return out;
 }
 
-  check_speed_window(m, out);
 }  // namespace whirl::deck

@@ -637,12 +637,15 @@ void warn_of_coarse_tables(run::Job& job, const std::string& step,
   if (!named) return;
   const std::string place = worst.against_frequency ? fmt::format("{:.6g} Hz", to_hz(worst.at))
                                                     : fmt::format("{:.6g} rpm", to_rpm(worst.at));
+  const bool alone = others == fmt::format("'{}'", named->name);
+  const std::string several =
+      alone ? others : fmt::format("{}; most for '{}'", others, named->name);
   Diagnostic d;
   d.code = "W16";
   d.message = fmt::format(
-      "step '{}': rows of tables are far apart for {}; most for '{}', whose coefficients beside {} "
+      "step '{}': rows of tables are far apart for {}, whose coefficients beside {} "
       "are known to about {:.2g} % only (without the row there they would be {:.2g} % off)",
-      step, others, named->name, place, 100 * worst.error, 400 * worst.error);
+      step, several, place, 100 * worst.error, 400 * worst.error);
   d.hint = "more rows about there";
   d.where = named->where;
   warn(job, std::move(d));

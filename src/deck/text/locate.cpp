@@ -173,6 +173,7 @@ class PlaceReader {
     for (const Named& n : names) {
       if (n.name != best.name || (n.rank == best.rank && n.rank != 2) || !apart(n)) continue;
       if (along && n.rank == 2) continue;
+      if (n.rank == best.rank && one_kind(best.name)) continue;
       return fail("E18",
                   n.rank == best.rank
                       ? fmt::format("'{}' is a disk and a bearing, at different places", best.name)
@@ -186,6 +187,12 @@ class PlaceReader {
                   offset(rest_), best.name.size());
     }
     return std::nullopt;
+  }
+  /// Two disks, or two bearings, of one name: that is an error by itself (E16).
+  bool one_kind(std::string_view name) const {
+    const auto called = [&](const auto& x) { return x.name == name; };
+    return std::count_if(model_.disks.begin(), model_.disks.end(), called) > 1 ||
+           std::count_if(model_.bearings.begin(), model_.bearings.end(), called) > 1;
   }
   static std::string_view noun(int rank) {
     return rank == 0 ? "section" : rank == 1 ? "shaft" : "disk or bearing";
