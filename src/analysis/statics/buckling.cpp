@@ -6,6 +6,8 @@
 #include <la/eigen.hpp>
 #include <system/stiffness_rate.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
