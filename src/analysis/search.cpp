@@ -89,6 +89,16 @@ double valley(const std::vector<double>& samples, std::size_t from, bool towards
 
 }  // namespace
 
+std::vector<std::size_t> ends_that_stand_out(const std::vector<double>& samples) {
+  constexpr double more = 10.0;
+  if (samples.size() < 2) return std::vector<std::size_t>(samples.size(), 0);
+  const std::size_t last = samples.size() - 1;
+  std::vector<std::size_t> out;
+  if (samples.front() > more * samples[1]) out.push_back(0);
+  if (samples.back() > more * samples[last - 1]) out.push_back(last);
+  return out;
+}
+
 std::vector<std::size_t> maxima_of(const std::vector<double>& samples) {
   constexpr double of_itself = 1e-7, of_the_largest = 1e-14;
   double largest = 0;

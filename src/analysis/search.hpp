@@ -16,6 +16,9 @@ double find_maximum(double a, double m, double fm, double b, double tolerance,
 /// rounding than the valleys on both sides. How close the samples are makes no difference. Neither
 /// end is one.
 std::vector<std::size_t> maxima_of(const std::vector<double>& samples);
+/// Numbers of the first and the last sample where it is more than ten times its neighbour, or alone:
+/// ends of a range that may stand on a maximum.
+std::vector<std::size_t> ends_that_stand_out(const std::vector<double>& samples);
 
 /// Zero of f in [a, b] with a sign change, by the Illinois variant of regula falsi.
 /// @pre fa and fb of different sign or zero, tolerance > 0.

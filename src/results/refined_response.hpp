@@ -38,11 +38,11 @@ struct PeakError {
 PeakError peak_error(double at, double amplification, const std::function<double(double)>& own,
                      const std::function<double(double)>& refined);
 
-/// Errors of the amplitudes of a step on their way into its summary, headers and warning.
 /// A response (m, or rad) that is nothing but the rounding of the displacements: there is none to be
 /// off by anything.
 bool is_rounding(const run::Job& job, double amplitude);
 
+/// Errors of the amplitudes of a step on their way into its summary, headers and warning.
 class AmplitudeAccuracy {
  public:
   /// what: they are, "amplitudes of the peaks".

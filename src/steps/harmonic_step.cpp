@@ -189,6 +189,7 @@ class HarmonicRun {
   void find_peaks();
   /// The ends of the grid, where they meet a resonance that nothing damps.
   void add_unbounded_ends();
+  std::vector<double> sizes_of(std::size_t probe) const;
   void list_maxima(std::size_t probe, std::vector<Found>& out) const;
   void find_peak(Found& x) const;
   bool is_bounded(Responder& responder, const Found& x) const;
@@ -513,11 +514,15 @@ double HarmonicRun::largest_of(std::size_t probe) const {
   return most;
 }
 
-void HarmonicRun::list_maxima(std::size_t probe, std::vector<Found>& out) const {
+std::vector<double> HarmonicRun::sizes_of(std::size_t probe) const {
   std::vector<double> sizes;
   for (const FrequencyPoint& x : points_)
     sizes.push_back(size_of(x, probe));
-  for (const std::size_t k : analysis::maxima_of(sizes))
+  return sizes;
+}
+
+void HarmonicRun::list_maxima(std::size_t probe, std::vector<Found>& out) const {
+  for (const std::size_t k : analysis::maxima_of(sizes_of(probe)))
     out.push_back({probe, k, 0.0, {}});
 }
 
@@ -548,19 +553,13 @@ void HarmonicRun::find_peaks() {
 }
 
 void HarmonicRun::add_unbounded_ends() {
-  constexpr double above_its_neighbour = 10.0;
-  const std::size_t last = grid_.size() - 1;
-  for (std::size_t end = 0; end <= last; end += std::max<std::size_t>(last, 1)) {
-    const std::size_t beside = end == 0 ? std::min<std::size_t>(1, last) : last - 1;
-    if (grid_[end] == 0.0) continue;
-    for (std::size_t p = 0; p < options_.probes.size(); ++p) {
-      const double here = size_of(points_[end], p);
-      if (last > 0 && !(here > above_its_neighbour * size_of(points_[beside], p))) continue;
+  for (std::size_t p = 0; p < options_.probes.size(); ++p)
+    for (const std::size_t end : analysis::ends_that_stand_out(sizes_of(p))) {
+      if (grid_[end] == 0.0) continue;
       Found x{p, end, grid_[end], points_[end]};
       x.bounded = is_bounded(responder_, x);
       if (!x.bounded) found_.push_back(std::move(x));
     }
-  }
 }
 
 void HarmonicRun::drop_unbounded() {

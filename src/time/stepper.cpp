@@ -144,7 +144,7 @@ void Stepper::choose_first_step() {
     if (speed > 0.0 && acceleration > 0.0) h = std::min(h, 0.01 * speed / acceleration);
     h = std::max(h, 1e-9 * span);
   }
-  h_next_ = std::clamp(h, options_.dt_min, options_.dt_max);
+  h_next_ = std::max(std::min(h, options_.dt_max), options_.dt_min);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -261,13 +261,13 @@ void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double hi
     }
 }
 
-std::vector<std::size_t> UnbalanceSolver::maxima(const std::vector<SteadyPoint>& points,
-                                                 std::size_t order, std::size_t probe) {
+std::vector<double> UnbalanceSolver::sizes_of(const std::vector<SteadyPoint>& points,
+                                              std::size_t order, std::size_t probe) {
   std::vector<double> sizes;
   sizes.reserve(points.size());
   for (const SteadyPoint& p : points)
     sizes.push_back(p.probe[order][probe].orbit().major);
-  return maxima_of(sizes);
+  return sizes;
 }
 
 void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
@@ -281,7 +281,7 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
     all_found = all_found && p.found;
     return size(p);
   };
-  for (const std::size_t i : maxima(coarse, order, probe)) {
+  for (const std::size_t i : maxima_of(sizes_of(coarse, order, probe))) {
     all_found = true;
     const double f1 = size(coarse[i]);
     ResponsePeak peak;
@@ -327,25 +327,18 @@ void UnbalanceSolver::add_edges_of_no_motion(std::size_t order, std::size_t prob
 }
 
 void UnbalanceSolver::add_unbounded_ends(const std::vector<SteadyPoint>& points) {
-  constexpr double above_its_neighbour = 10.0;
-  const std::size_t last = points.size() - 1;
-  for (std::size_t end = 0; end <= last; end += std::max<std::size_t>(last, 1)) {
-    const SteadyPoint& here = points[end];
-    const SteadyPoint& beside = points[end == 0 ? std::min<std::size_t>(1, last) : last - 1];
-    if (here.Omega == 0.0 || !here.found) continue;
-    for (std::size_t order = 0; order < here.probe.size(); ++order)
-      for (std::size_t probe = 0; probe < here.probe[order].size(); ++probe) {
-        const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
-        if (last > 0 && !(size(here) > above_its_neighbour * size(beside))) continue;
+  for (std::size_t order = 0; order < points.front().probe.size(); ++order)
+    for (std::size_t probe = 0; probe < options_.probes.size(); ++probe)
+      for (const std::size_t end : ends_that_stand_out(sizes_of(points, order, probe))) {
         ResponsePeak peak;
         peak.order = order;
         peak.probe = probe;
-        peak.speed = peak.low = peak.high = peak.low_seen = peak.high_seen = here.Omega;
+        peak.speed = peak.low = peak.high = peak.low_seen = peak.high_seen = points[end].Omega;
         peak.amplitude = infinity;
+        if (peak.speed == 0.0 || !points[end].found) continue;
         peak.bounded = is_bounded(peak);
         if (!peak.bounded) peaks_.push_back(peak);
       }
-  }
 }
 
 std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& speeds) {
@@ -373,7 +366,7 @@ std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& s
 
 bool UnbalanceSolver::shows_another(const std::vector<SteadyPoint>& points, std::size_t order,
                                     std::size_t probe) const {
-  for (const std::size_t i : maxima(points, order, probe)) {
+  for (const std::size_t i : maxima_of(sizes_of(points, order, probe))) {
     const bool known = std::any_of(peaks_.begin(), peaks_.end(), [&](const ResponsePeak& p) {
       return p.order == order && p.probe == probe && p.speed >= points[i - 1].Omega &&
              p.speed <= points[i + 1].Omega;

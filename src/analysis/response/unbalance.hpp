@@ -104,9 +104,9 @@ class UnbalanceSolver {
  private:
   /// At the speeds in their order: equilibria one after the other, responses side by side.
   std::vector<SteadyPoint> points_at(const std::vector<double>& speeds);
-  /// Numbers of the points at which the orbit of a probe is largest.
-  static std::vector<std::size_t> maxima(const std::vector<SteadyPoint>& points, std::size_t order,
-                                         std::size_t probe);
+  /// Major axes of the orbit of a probe, m.
+  static std::vector<double> sizes_of(const std::vector<SteadyPoint>& points, std::size_t order,
+                                      std::size_t probe);
   void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
                   std::vector<SteadyPoint>& extra);
   /// Where points without a motion begin and end the response has no bound.

@@ -62,66 +62,66 @@ std::vector<std::vector<std::size_t>> sets_of_equals(const std::vector<const Whi
   return out;
 }
 
-/// Share of x in the space of a set, by the metric M: 1 where it lies in it.
-double share_in_space(const std::vector<const WhirlMode*>& modes, const std::vector<VecXc>& mx,
-                      const std::vector<std::size_t>& set, const VecXc& x, double size) {
+/// Modes at one speed, what M makes of them, and their squared lengths by it.
+struct ModesByMass {
+  std::vector<const WhirlMode*> mode;
+  std::vector<VecXc> mx;
+  std::vector<double> size;
+
+  void add(const WhirlMode& m, const la::BlockMatrix<6>& M) {
+    mode.push_back(&m);
+    la::multiply(M, m.x, mx.emplace_back());
+    size.push_back(std::abs(m.x.dot(mx.back())));
+  }
+};
+
+/// Share of a vector of squared length `size` in the space of a set, by mass: 1 where it lies in it.
+double share_in_space(const ModesByMass& modes, const std::vector<std::size_t>& set, const VecXc& x,
+                      double size) {
   const auto n = static_cast<Index>(set.size());
   MatXc gram(n, n);
   VecXc on(n);
   for (Index a = 0; a < n; ++a) {
-    const VecXc& of = modes[set[at(a)]]->x;
+    const VecXc& of = modes.mode[set[at(a)]]->x;
     for (Index b = 0; b < n; ++b)
-      gram(a, b) = of.dot(mx[set[at(b)]]);
-    on[a] = std::conj(x.dot(mx[set[at(a)]]));
+      gram(a, b) = of.dot(modes.mx[set[at(b)]]);
+    on[a] = std::conj(x.dot(modes.mx[set[at(a)]]));
   }
   const double share = on.dot(la::pivoted_solution(gram, on)).real() / size;
   return std::isfinite(share) ? std::min(share, 1.0) : 0.0;
 }
 
+/// [of][in]: share of a mode in the space of the equals that another is one of; 0 where it has none.
+MatX shares_among_equals(const ModesByMass& of, const ModesByMass& in) {
+  MatX out = MatX::Zero(static_cast<Index>(of.mode.size()), static_cast<Index>(in.mode.size()));
+  for (const std::vector<std::size_t>& set : sets_of_equals(in.mode))
+    for (std::size_t i = 0; i < of.mode.size(); ++i) {
+      if (!(of.size[i] > 0)) continue;
+      const double share = share_in_space(in, set, of.mode[i]->x, of.size[i]);
+      for (const std::size_t j : set)
+        out(static_cast<Index>(i), static_cast<Index>(j)) = share;
+    }
+  return out;
+}
+
 }  // namespace
 
 std::vector<ModeTracker::Likeness> ModeTracker::compare(const std::vector<WhirlMode>& found) {
-  // M products of all modes once
-  const la::MCK& m = solver_.matrices();
-  struct Side {
-    std::vector<const WhirlMode*> mode;
-    std::vector<VecXc> mx;
-    std::vector<double> size;
-    MatX in_sets_of_other;  ///< 1 where a mode lies in the space of equals that the other is one of
-  };
-  Side old, now;
-  for (const TrackedMode& x : modes_)
-    old.mode.push_back(&x.now);
-  for (const WhirlMode& x : found)
-    now.mode.push_back(&x);
-  for (Side* side : {&old, &now})
-    for (const WhirlMode* mode : side->mode) {
-      side->mx.emplace_back();
-      la::multiply(m.M, mode->x, side->mx.back());
-      side->size.push_back(std::abs(mode->x.dot(side->mx.back())));
-    }
-  // [mode][mode of the other side]
-  const auto shares = [](const Side& of, const Side& other) {
-    MatX out =
-        MatX::Zero(static_cast<Index>(of.mode.size()), static_cast<Index>(other.mode.size()));
-    for (const std::vector<std::size_t>& set : sets_of_equals(other.mode))
-      for (std::size_t i = 0; i < of.mode.size(); ++i) {
-        if (!(of.size[i] > 0)) continue;
-        const double share = share_in_space(other.mode, other.mx, set, of.mode[i]->x, of.size[i]);
-        for (const std::size_t j : set)
-          out(static_cast<Index>(i), static_cast<Index>(j)) = share;
-      }
-    return out;
-  };
-  old.in_sets_of_other = shares(old, now);
-  now.in_sets_of_other = shares(now, old);
+  const la::BlockMatrix<6>& M = solver_.matrices().M;
+  ModesByMass old, now;
+  for (const TrackedMode& m : modes_)
+    old.add(m.now, M);
+  for (const WhirlMode& m : found)
+    now.add(m, M);
+  const MatX old_among_equals = shares_among_equals(old, now);
+  const MatX now_among_equals = shares_among_equals(now, old);
   std::vector<Likeness> pairs;
   for (std::size_t i = 0; i < old.mode.size(); ++i)
     for (std::size_t j = 0; j < now.mode.size(); ++j) {
       if (!(old.size[i] > 0 && now.size[j] > 0)) continue;
       const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
       const double own = std::norm(old.mode[i]->x.dot(now.mx[j])) / (old.size[i] * now.size[j]);
-      const double like = std::max({own, old.in_sets_of_other(a, b), now.in_sets_of_other(b, a)});
+      const double like = std::max({own, old_among_equals(a, b), now_among_equals(b, a)});
       if (like < 0.05) continue;
       const Complex was = old.mode[i]->lambda, is = now.mode[j]->lambda;
       const double apart = std::abs(is - was) / (std::abs(was) + std::abs(is) + 1e-300);

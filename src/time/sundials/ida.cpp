@@ -299,7 +299,7 @@ void Ida::reinitialize() {
   y << q_, v_;
   yp << v_, a_;
   // order 1 takes shorter steps than the order 2 that proposed this one
-  h_init_ = std::clamp(0.1 * h_next_, options_.dt_min, options_.dt_max);
+  h_init_ = std::max(std::min(0.1 * h_next_, options_.dt_max), options_.dt_min);
   if (!initialized_) {
     check(IDAInit(
               ida_,
