@@ -122,6 +122,8 @@ class ModeSolver {
   void reset();
   /// The next solve() starts from what the other one, of the same pattern and options, found last.
   void start_from(const ModeSolver& other);
+  /// The next solve() starts from these, as from modes of a neighbouring problem.
+  void start_from(std::span<const Mode> near);
   /// Newton's method from one mode; nullopt when it does not converge.
   std::optional<Mode> follow(const MCK& m, const Mode& start);
 

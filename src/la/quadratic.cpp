@@ -429,6 +429,16 @@ void ModeSolver::start_from(const ModeSolver& other) {
   impl_->alpha = other.impl_->alpha;
 }
 
+void ModeSolver::start_from(std::span<const Mode> near) {
+  impl_->known.clear();
+  for (const Mode& m : near) {
+    Pair p;
+    p.lambda = m.lambda;
+    p.x = m.x;
+    impl_->known.push_back(std::move(p));
+  }
+}
+
 std::optional<Mode> ModeSolver::follow(const MCK& m, const Mode& start) {
   impl_->set(m);
   Pair p;

@@ -57,25 +57,31 @@ struct Truncation {
   }
 };
 
+struct SpeedAndGrowth {
+  double speed = 0, growth = 0;  ///< rad/s, 1/s
+};
+
 /// Where the growth is largest: of each band, nine at most, and of all speeds; and where most is cut.
-std::vector<double> telling_speeds(const BandResult& r) {
+std::vector<SpeedAndGrowth> telling_speeds(const BandResult& r) {
   std::vector<InstabilityBand> bands = r.bands;
   std::sort(bands.begin(), bands.end(),
             [](const InstabilityBand& a, const InstabilityBand& b) { return a.growth > b.growth; });
-  std::vector<double> out;
+  std::vector<SpeedAndGrowth> out;
   for (std::size_t k = 0; k < std::min<std::size_t>(bands.size(), 9); ++k)
-    out.push_back(bands[k].speed);
-  const auto top = std::max_element(r.growth.begin(), r.growth.end());
-  out.push_back(r.speeds[static_cast<std::size_t>(top - r.growth.begin())]);
-  const auto most_cut = std::max_element(r.cut.begin(), r.cut.end());
-  out.push_back(r.speeds[static_cast<std::size_t>(most_cut - r.cut.begin())]);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+    out.push_back({bands[k].speed, bands[k].growth});
+  const auto add_largest = [&](const std::vector<double>& of) {
+    const auto k = static_cast<std::size_t>(std::max_element(of.begin(), of.end()) - of.begin());
+    const bool there = std::any_of(out.begin(), out.end(),
+                                   [&](const SpeedAndGrowth& s) { return s.speed == r.speeds[k]; });
+    if (!there) out.push_back({r.speeds[k], r.growth[k]});
+  };
+  add_largest(r.growth);
+  add_largest(r.cut);
   return out;
 }
 
 Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep& law,
-                           const BandResult& r, double sense, analysis::RotatingAxes& axes) {
+                           const BandResult& r, double sense, const analysis::RotatingAxes& axes) {
   Truncation t;
   t.harmonics = static_cast<int>(axes.harmonics());
   t.cut = *std::max_element(r.cut.begin(), r.cut.end());
@@ -83,13 +89,11 @@ Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep
   const Index finer_harmonics = axes.harmonics() + more;
   analysis::RotatingAxes finer(s.linear, sense * r.speeds.back(),
                                {.least = finer_harmonics, .most = finer_harmonics});
-  for (const double Omega : telling_speeds(r)) {
-    const auto growth = [&](analysis::RotatingAxes& a) {
-      return analysis::largest_growth(a, sense * Omega, r.speeds.back(), law.modes);
-    };
-    const double own = growth(axes), other = growth(finer);
+  for (const SpeedAndGrowth& own : telling_speeds(r)) {
+    const double other =
+        analysis::largest_growth(finer, sense * own.speed, r.speeds.back(), law.modes);
     ++t.speeds;
-    t.change = std::max(t.change, std::abs(own - other));
+    t.change = std::max(t.change, std::abs(own.growth - other));
   }
   return t;
 }

@@ -30,14 +30,19 @@ class BandSearch {
   BandSearch(RotatingAxes& axes, const BandOptions& o)
       : axes_(axes),
         solver_(axes.pattern(), axes.active(), options(axes, o)),
+        of_mean_(options(axes, o)),
         tolerance_(o.tolerance),
-        sense_(o.sense) {}
+        sense_(o.sense) {
+    of_mean_.count = of_mean_.count > 0 ? o.modes : 0;
+  }
 
   /// The motion that grows fastest, of all.
   Growth at(double Omega) {
     ++evaluations;
     const la::MCK& m = axes_.at(sense_ * Omega, Complex(0, infinity));
     Growth best{-infinity, 0, {}};
+    if (!started_ && !axes_.constant()) solver_.start_from(axes_.motions_and_copies(of_mean_));
+    started_ = true;
     const std::vector<la::Mode>& modes = solver_.solve(m);
     note_count(solver_.certificate());
     std::vector<std::pair<double, double>> cut;  // frequency, share of the last harmonic
@@ -246,6 +251,8 @@ class BandSearch {
   }
   RotatingAxes& axes_;
   la::ModeSolver solver_;
+  la::ModeOptions of_mean_;
+  bool started_ = false;  ///< the solver knows motions
   double tolerance_, sense_;
 };
 

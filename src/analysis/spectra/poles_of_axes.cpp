@@ -43,8 +43,9 @@ struct Shares {
 
 /// What turns with the rotor stands in the axes; that of fixed direction, which meets stiffness or inertia that
 /// turns, makes circles of once a revolution there.
+/// arm: m, at which tilts are displacements.
 Shares shares_of(const VecXc& x, const std::vector<Index>& orders, const Linearizer& linear,
-                 bool of_weight) {
+                 bool of_weight, double arm) {
   const system::Frames& frames = linear.equilibrium().state.frames;
   const Complex i(0, 1);
   double driven = 0, seen = 0, all = 0;
@@ -58,22 +59,30 @@ Shares shares_of(const VecXc& x, const std::vector<Index>& orders, const Lineari
   for (const VecXc& v : {x, VecXc(x.conjugate())})  // its real and its imaginary part
     for (Index n = 0; n < linear.system().nodes(); ++n) {
       if (linear.system().node(n).scalar) continue;
-      Index part = 0;
-      const auto circle = [&] {
-        const Eigen::Vector3cd u = v.segment<3>(6 * (parts * n + part++));
+      const auto displacement = [&](Index part) {
+        const Eigen::Vector3cd u = v.segment<3>(6 * (parts * n + part));
         const Eigen::Vector3cd along = frames.axes(n).transpose() * u;
         return Complex(along[1] + i * along[2]);
       };
-      for (const Index m : orders) {
-        const Complex c = circle();
-        const Complex d = m == 0 ? Complex(0.0) : circle();
-        if (m == 0) {
-          add(std::norm(c), 0);
-        } else {
+      const auto tilt = [&](Index part) {
+        const Eigen::Vector2cd g = v.segment<2>(6 * (parts * n + part) + system::gamma2);
+        return Complex(arm * (g[0] + i * g[1]));
+      };
+      const auto add_circles = [&](const auto& circle) {
+        Index part = 0;
+        for (const Index m : orders) {
+          const Complex c = circle(part++);
+          if (m == 0) {
+            add(std::norm(c), 0);
+            continue;
+          }
+          const Complex d = circle(part++);
           add(0.25 * std::norm(c - i * d), m);
           add(0.25 * std::norm(c + i * d), -m);
         }
-      }
+      };
+      add_circles(displacement);
+      add_circles(tilt);
     }
   return all > 0 ? Shares{driven / all, seen / all} : Shares{};
 }
@@ -104,7 +113,7 @@ void RotatingAxes::find_poles(const Steady& of, double low, double high,
     if (std::abs(x.lambda.real()) > (1.0 + margin) * half) continue;
     Complex pole = middle + x.lambda;
     const auto seen = [&] {
-      return is_seen(pole, shares_of(x.x, of.orders, linear_, of.of_weight));
+      return is_seen(pole, shares_of(x.x, of.orders, linear_, of.of_weight, arm_));
     };
     if (!seen()) continue;
     for (int round = 0; round < 4 && !exact; ++round) {

@@ -139,6 +139,7 @@ void RotatingAxes::require(const SteadySystem& running) {
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Harmonics harmonics, Motion motion)
     : linear_(linear),
       motion_(linear.system(), motion, linear.running().spinning(), MotionReduction::Twist::held),
+      arm_(0.1 * model_length(linear.system())),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   WHIRL_EXPECTS(harmonics.least >= 1 && harmonics.most >= harmonics.least);
@@ -238,10 +239,9 @@ bool RotatingAxes::still_balanced(double Omega) {
     if (k % 6 < 3) force = std::max(force, std::abs(e.reactions[k]));
   VecX r(e.state.q.size());
   if (!linear_.running().residual(e.state.frames, Omega, e.state.q, r)) return false;
-  const double arm = 0.1 * model_length(linear_.system());
   const std::vector<unsigned char> free = free_unknowns(linear_.system(), e.holds());
   for (Index k = 0; k < r.size(); ++k)
-    if (free[idx(k)] && std::abs(r[k]) > unbalanced_share * force * (k % 6 < 3 ? 1.0 : arm))
+    if (free[idx(k)] && std::abs(r[k]) > unbalanced_share * force * (k % 6 < 3 ? 1.0 : arm_))
       return false;
   return true;
 }
@@ -289,7 +289,49 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
     return turned_;
   }
   balance(Omega, lambda, orders(), balance_, hill_);
+  hill_speed_ = speed(Omega);
   return hill_;
+}
+
+la::Mode RotatingAxes::copy(const la::Mode& mean, Index h, double w) const {
+  const Index parts = 2 * harmonics_ + 1, cosine = 2 * std::abs(h) - 1;
+  la::Mode out;
+  out.lambda = mean.lambda + Complex(0.0, static_cast<double>(h * step_) * w);
+  out.x = VecXc::Zero(6 * pattern_->size());
+  for (Index i = 0; i < linear_.system().nodes(); ++i) {
+    const auto own = mean.x.segment<6>(6 * i);
+    if (h == 0) {
+      out.x.segment<6>(6 * parts * i) = own;
+      continue;
+    }
+    // exp(-i h theta), so that the motion is that of the mean
+    out.x.segment<6>(6 * (parts * i + cosine)) = own;
+    out.x.segment<6>(6 * (parts * i + cosine + 1)) = Complex(0.0, h > 0 ? -1.0 : 1.0) * own;
+  }
+  if (out.lambda.imag() < 0.0) {
+    out.lambda = std::conj(out.lambda);
+    out.x = out.x.conjugate().eval();
+  }
+  return out;
+}
+
+std::vector<la::Mode> RotatingAxes::motions_and_copies(const la::ModeOptions& options) const {
+  WHIRL_EXPECTS(!constant());
+  const la::BlockPattern& p = linear_.system().pattern();
+  const Index parts = 2 * harmonics_ + 1;
+  la::MCK mean = linear_.system().make_matrices();
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[idx(i)]; s < p.row_start()[idx(i) + 1]; ++s) {
+      const Index from = pattern_->slot(parts * i, parts * p.cols()[idx(s)]);
+      mean.M.block(s) = hill_.M.block(from);
+      mean.C.block(s) = hill_.C.block(from);
+      mean.K.block(s) = hill_.K.block(from);
+    }
+  std::vector<la::Mode> out;
+  for (const la::Mode& m : la::quadratic_modes(mean, motion_.active(), options))
+    for (Index h = m.lambda.imag() == 0.0 ? 0 : -harmonics_; h <= harmonics_; ++h)
+      out.push_back(copy(m, h, hill_speed_));
+  return out;
 }
 
 std::vector<Index> RotatingAxes::orders() const {
@@ -452,9 +494,9 @@ double RotatingAxes::constant_share(const VecXc& x) const {
   double own = 0, all = 0;
   const Index parts = 2 * harmonics_ + 1;
   for (Index i = 0; i < linear_.system().nodes(); ++i) {
-    own += c.segment<3>(6 * i).squaredNorm();
+    own += squared_size(c, i);
     for (Index a = 0; a < parts; ++a)
-      all += (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
+      all += (a == 0 ? 1.0 : 0.5) * squared_size(x, parts * i + a);
   }
   return all > 0 ? own / all : 0.0;
 }
@@ -465,7 +507,7 @@ double RotatingAxes::last_share(const VecXc& x) const {
   const Index parts = 2 * harmonics_ + 1;
   for (Index i = 0; i < linear_.system().nodes(); ++i)
     for (Index a = 0; a < parts; ++a) {
-      const double size = (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
+      const double size = (a == 0 ? 1.0 : 0.5) * squared_size(x, parts * i + a);
       all += size;
       if (a + 2 >= parts) last += size;
     }
@@ -480,7 +522,7 @@ RotatingAxes::SteadySize RotatingAxes::size_of(const VecX& x, Index parts) const
   for (Index i = 0; i < linear_.system().nodes(); ++i) {
     if (linear_.system().node(i).scalar) continue;
     for (Index a = 0; a < parts; ++a) {
-      const double size = x.segment<3>(6 * (parts * i + a)).norm();
+      const double size = std::sqrt(squared_size(x, parts * i + a));
       out.all = std::max(out.all, size);
       if (a + last >= parts) out.last = std::max(out.last, size);
     }
@@ -532,8 +574,9 @@ VecX RotatingAxes::solve_response(double Omega, const VecXc& forces) {
     const Vector<6> now = -J * J * f.segment<6>(6 * n).real();
     const Vector<6> later = -f.segment<6>(6 * n).imag();
     const Vector<6> turned_on = J * now;
-    size = std::max(size, now.head<3>().norm());
-    other = std::max(other, (-J * J * later - turned_on).head<3>().norm());
+    const Vector<6> apart = -J * J * later - turned_on;
+    size = std::max({size, now.head<3>().norm(), now.tail<3>().norm() / arm_});
+    other = std::max({other, apart.head<3>().norm(), apart.tail<3>().norm() / arm_});
     x.segment<6>(6 * parts * n) = now;
   }
   for (Index k = 0; k < x.size(); ++k)

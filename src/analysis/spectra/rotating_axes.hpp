@@ -19,6 +19,7 @@
 #include <analysis/linearizer.hpp>
 #include <analysis/spectra/harmonic_balance.hpp>
 #include <la/direct.hpp>
+#include <la/eigen.hpp>
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -96,6 +97,11 @@ class RotatingAxes {
   double last_share() const { return share_; }
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
   VecXc constant_part(const VecXc& x) const;
+  /// What the roots of the matrices that at() gave last are near, where these are periodic: motions
+  /// of the mean matrices (as many of these, or up to the frequency, as the options say), and their
+  /// copies in every harmonic: none of them knows of what varies.
+  /// @pre !constant(), and at() has been called.
+  std::vector<la::Mode> motions_and_copies(const la::ModeOptions& options) const;
   /// Symmetric part of the mean K~ (negative eigenvalues: what the rotation has made unstable if
   /// nothing gyroscopic held it).
   Index negative_stiffnesses(double Omega);
@@ -128,6 +134,13 @@ class RotatingAxes {
     }
   };
   SteadySize size_of(const VecX& x, Index parts) const;
+  /// Of what a block of unknowns does, m^2: its displacement, and its tilt at arm_, without which a
+  /// rigid rotor that tilts about its middle would not move.
+  template <class Motion>
+  double squared_size(const Motion& x, Index block) const {
+    return x.template segment<3>(6 * block).squaredNorm() +
+           arm_ * arm_ * x.template segment<2>(6 * block + system::gamma2).squaredNorm();
+  }
   /// Parts of the motion under forces that turn, and under those of fixed direction; empty at the edge of a
   /// band.
   VecX solve_response(double Omega, const VecXc& forces);
@@ -171,7 +184,12 @@ class RotatingAxes {
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
+  double arm_;  ///< m, at which tilts and moments compare with displacements and forces
+  /// x exp(lambda t) as the motion exp((lambda + i h step w) t) of the harmonic h, in the parts of at();
+  /// w: speed of the axes, rad/s.
+  la::Mode copy(const la::Mode& mean, Index h, double w) const;
   la::MCK turned_, first_, raw_, hill_;
+  double hill_speed_ = 0;        ///< of the axes, rad/s, there
   std::vector<Index> changing_;  ///< of the pattern's blocks: of changes_; -1: it does not
   std::vector<Changes> changes_;
   std::unique_ptr<HarmonicBalance> balance_, odd_balance_;  ///< made when first wanted
