@@ -74,9 +74,9 @@ std::vector<plot::CriticalMark> add_criticals(results::FrequencyStep& s,
   table.title = "Torsional critical speeds";
   table.columns = {
       {"order", "-", "excitations a revolution"}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}};
-  double highest = 0;
+  double highest = 0;  // of the undamped frequencies of the modes listed
   for (const analysis::WhirlMode& m : modes)
-    highest = std::max(highest, m.frequency);
+    highest = std::max(highest, analysis::undamped_reach(m.frequency, m.damping_ratio));
   std::vector<plot::CriticalMark> marks;
   for (const double order : law.orders) {
     if (modes.empty()) break;
@@ -84,7 +84,7 @@ std::vector<plot::CriticalMark> add_criticals(results::FrequencyStep& s,
     q.order = order;
     q.max_speed = law.max_speed;
     q.motion = analysis::Motion::torsional;
-    q.max_frequency = 1.0001 * highest;
+    q.max_frequency = highest;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, q)) {
       table.add({order, to_rpm(c.speed), to_hz(c.frequency)});
       s.summary()["critical speeds [rpm]"][fmt::format("{:g}x", order)].push(to_rpm(c.speed));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 using whirl::test::Columns;
 using whirl::test::DeckRun;
@@ -438,4 +439,77 @@ TEST(Spectra, ShaftsAlikeHaveWholeLines) {
         EXPECT_TRUE(std::isfinite(row[k])) << count << " " << c.names[k];
     }
   }
+}
+
+// Two inertias of 4 and 6 kg m2 on 2e5 N m/rad: 288.675 rad/s without the damper of 100 N m s/rad, below which
+// the damped frequency lies. The list of critical speeds ended there.
+TEST(CriticalSpeeds, OfTheHighestDampedTorsionalModeAreListed) {
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "motor"
+[[shaft.section]]
+name = "m"
+length = "500 mm"
+rigid = true
+[[shaft]]
+name = "fan"
+origin = ["500 mm", "0 mm", "0 mm"]
+[[shaft.section]]
+name = "f"
+length = "500 mm"
+rigid = true
+[[disk]]
+name = "rotor"
+at = "m:start"
+mass = "100 kg"
+Ip = "4 kg.m^2"
+[[disk]]
+name = "wheel"
+at = "f:end"
+mass = "100 kg"
+Ip = "6 kg.m^2"
+[[bearing]]
+name = "coupling"
+at = "m:end"
+to = "f:start"
+type = "coupling"
+kxx = "1e7 N/m"
+krxx = "2e5 N.m/rad"
+crxx = "100 N.m.s/rad"
+[[bearing]]
+name = "A"
+at = "m:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "B"
+at = "m:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "C"
+at = "f:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "D"
+at = "f:end"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+name = "t"
+type = "torsional"
+max_speed = "3600 rpm"
+orders = [1, 2]
+[output]
+report = false
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const double w = std::sqrt(2e5 / 4.0 + 2e5 / 6.0) * 30.0 / std::numbers::pi;
+  const Columns t = d.csv("t_critical_speeds.csv");
+  ASSERT_EQ(t.rows.size(), 2u) << d.log;
+  EXPECT_NEAR(t.rows[0][1], w, 1e-9 * w);
+  EXPECT_NEAR(t.rows[1][1], 0.5 * w, 1e-9 * w);
 }

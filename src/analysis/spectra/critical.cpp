@@ -305,6 +305,12 @@ std::vector<Critical> OrderCrossings::solve(const Linearizer& linear, double tol
   return out;
 }
 
+double undamped_reach(double frequency, double damping_ratio) {
+  constexpr double rounding = 1e-4;
+  const double z2 = std::min(damping_ratio * damping_ratio, 0.99);
+  return frequency / std::sqrt(1.0 - z2) * (1.0 + 2.0 * z2 + rounding);
+}
+
 double lowest_speed(double min_speed, double max_speed) {
   return min_speed > 0 ? min_speed : 1e-3 * max_speed;
 }

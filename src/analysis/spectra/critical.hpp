@@ -67,6 +67,11 @@ class OrderCrossings {
   std::vector<Step> steps_;
 };
 
+/// rad/s: so far up the undamped frequencies of motions reach whose highest damped one has this frequency
+/// (rad/s) and damping ratio. It is |lambda|, but for what damping does to the shape, which is of the second
+/// order in the ratio.
+double undamped_reach(double frequency, double damping_ratio);
+
 /// Where a search begins: at standstill every rotor that turns freely has the frequency 0 = n x 0,
 /// which is no critical speed.
 double lowest_speed(double min_speed, double max_speed);
