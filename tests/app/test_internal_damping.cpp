@@ -270,3 +270,108 @@ motion = "axial"
     }
   }
 }
+
+// Hysteretic damping turns its sense where whirl turns as the rotor does: what dies there by more than the air
+// takes grows just above it. And massless nodes, whose viscous damping turns with the rotor, hide no mode:
+// with k = 48 E I/L^3 whirl grows from c w = eta k + beta k (Omega - w) on.
+TEST(InternalDampingDeck, LossFactorsBesideOtherDamping) {
+  const DeckRun outside(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "s"
+material = "steel"
+damping = { internal_loss_factor = 0.01 }
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 300, 40, 2], ["b", 300, 40, 2]]
+[[disk]]
+name = "d"
+at = "a:end"
+mass = "15 kg"
+Ip = "0.2 kg.m^2"
+Id = "0.11 kg.m^2"
+[[bearing]]
+name = "A"
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "3e7 N/m"
+kzz = "3e7 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+[[bearing]]
+name = "B"
+at = "b:end"
+type = "linear"
+kyy = "3e7 N/m"
+kzz = "3e7 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+[[step]]
+name = "st"
+type = "stability"
+speed = { start = "500 rpm", stop = "9000 rpm", points = 6 }
+modes = 8
+[output]
+report = false
+)");
+  ASSERT_EQ(outside.exit, 0) << outside.log;
+  EXPECT_FALSE(outside.says("not known")) << outside.log;
+  const Columns first = outside.csv("st_onset.csv");
+  ASSERT_EQ(first.rows.size(), 1u) << outside.log;
+  const auto at = first.named(first.rows[0]);
+  EXPECT_NEAR(at.at("frequency / speed [-]"), 1.0, 1e-9);
+  constexpr double EI = 8349.76422461912, k = 48.0 * EI, c = 50.0, eta = 0.02, beta = 1e-5,
+                   m = 10.0;
+  const DeckRun massless(fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "s"
+damping = {{ internal_loss_factor = {}, internal_beta = "{} s" }}
+[[shaft.section]]
+name = "a"
+length = "500 mm"
+min_elements = 2
+constants = {{ EA = "1e8 N", kGA = "1e12 N", GJ = "1e4 N.m^2", EI = "{} N.m^2", rhoA = "0 kg/m", rhoI = "0 kg.m", rhoIp = "0 kg.m" }}
+[[shaft.section]]
+name = "b"
+length = "500 mm"
+min_elements = 2
+constants = {{ EA = "1e8 N", kGA = "1e12 N", GJ = "1e4 N.m^2", EI = "{} N.m^2", rhoA = "0 kg/m", rhoI = "0 kg.m", rhoIp = "0 kg.m" }}
+[[disk]]
+name = "D"
+at = "a:end"
+mass = "{} kg"
+Ip = "0.2 kg.m^2"
+Id = "0.1 kg.m^2"
+[[bearing]]
+name = "A"
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "B"
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "air"
+at = "D"
+type = "linear"
+cyy = "{} N.s/m"
+czz = "{} N.s/m"
+[[step]]
+name = "st"
+type = "stability"
+speed = {{ start = "500 rpm", stop = "9000 rpm", points = 10 }}
+[output]
+report = false
+)",
+                                     eta, beta, EI, EI, m, c, c));
+  ASSERT_EQ(massless.exit, 0) << massless.log;
+  const Columns second = massless.csv("st_onset.csv");
+  ASSERT_EQ(second.rows.size(), 1u) << massless.log;
+  const double w = std::sqrt(k / m), onset = w + (c * w - eta * k) / (beta * k);
+  EXPECT_NEAR(second.named(second.rows[0]).at("speed [rpm]") * rpm, onset, 1e-5 * onset);
+}

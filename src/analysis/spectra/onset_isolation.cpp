@@ -10,7 +10,8 @@ namespace {
 
 /// Relative width of the bracket in which a change of the number of growing roots is isolated.
 constexpr double no_width = 1e-10;
-/// Relative distance within which onsets of roots next to zero are rounding's.
+/// Relative distance within which onsets of roots next to zero are rounding's, and motions of two sides of a
+/// bracket of no width are one.
 constexpr double near_by = 1e-7;
 /// Of the speed: what a double root at zero becomes by rounding, its square root.
 constexpr double at_zero = 1e-6;
@@ -58,6 +59,20 @@ bool grows_within_rounding(const WhirlMode& m, const std::vector<WhirlMode>& the
   return std::any_of(there.begin(), there.end(), [&](const WhirlMode& w) {
     return w.growth() == 0 && w.lambda.real() > 0.5 * rate && std::abs(w.lambda - m.lambda) < rate;
   });
+}
+
+/// Each motion of nearly this frequency of one list has one in the other. Growth may differ: hysteretic damping
+/// turns its sense where a motion turns as the rotor does, and moves its frequency by far less.
+bool as_many_near(const WhirlMode& m, const std::vector<WhirlMode>& here,
+                  const std::vector<WhirlMode>& there) {
+  constexpr double far_less = 0.1;
+  const auto near = [&](const WhirlMode& w) {
+    const double jump = std::abs(w.lambda.real() - m.lambda.real());
+    return w.oscillates() &&
+           std::abs(w.frequency - m.frequency) <= far_less * jump + near_by * m.frequency;
+  };
+  return m.oscillates() && std::count_if(there.begin(), there.end(), near) >=
+                               std::count_if(here.begin(), here.end(), near);
 }
 
 }  // namespace
@@ -132,7 +147,7 @@ void OnsetIsolation::add(const Look& a, const Look& b) {
     const WhirlMode& m = p.mode;
     if (grows_within_rounding(m, few.modes))
       add_slow(p, few.speed(), many.speed(), gains);
-    else if (grows_unlisted(m, few))
+    else if (!as_many_near(m, many.modes, few.modes) && grows_unlisted(m, few))
       found_.unplaced.push_back({(gains ? many : few).speed(), m.frequency, m.lambda.real()});
     else
       found_.onsets.push_back({at, p.real() ? 0.0 : m.frequency, gains, m, true});

@@ -172,6 +172,9 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     return std::abs(eig.values(a) - rate) < std::abs(eig.values(b) - rate);
   });
+  // motions that move no mass have no others beside them here
+  constexpr double beside = 0.5;
+  if (!(std::abs(eig.values(order[at(k - 1)]) - rate) < beside * std::abs(rate))) return;
   for (Index j = 0; j < k; ++j) {
     const VecXc y = eig.vectors.col(order[at(j)]).head(k);
     group[at(j)].x = X * y;
@@ -271,6 +274,10 @@ void WhirlSolver::solve_hysteretic(double Omega) {
     for (const la::Mode& mode : group) {
       const auto settled = settle_rate(Omega, mode);
       if (!settled && options_.certify) continue;  // the count says whether it is missed
+      // what hardly swings (viscous damping of massless nodes turns with the rotor, where hysteretic has no
+      // sense) is in no list
+      const bool dies = mode.lambda.real() < 0.0 && !la::oscillates(mode.lambda);
+      if (!settled && dies) continue;
       if (!settled)
         throw run_error("E77",
                         fmt::format("hysteretic damping: a whirl mode was lost on the way to its "
