@@ -20,7 +20,18 @@ analysis::Definiteness judge_state(analysis::SteadySystem& running, const system
                                  analysis::model_length(system), shape);
 }
 
+namespace {
+std::string pairs_of_negative_part(Index n) {
+  return fmt::format(
+      "{} pair{} of eigenvalues of the unsymmetric static tangent {} a negative real part", n,
+      n == 1 ? "" : "s", n == 1 ? "has" : "have");
+}
+}  // namespace
+
 std::string stability_line(const analysis::Definiteness& d, double Omega) {
+  if (d.undecided())
+    return "whether the equilibrium is stable depends on masses and damping: " +
+           pairs_of_negative_part(d.open);
   if (d.stable()) return {};
   std::string out =
       fmt::format("unstable equilibrium, {} direction{}", d.negative, d.negative == 1 ? "" : "s");
@@ -36,14 +47,15 @@ std::string stability_line(const analysis::Definiteness& d, double Omega) {
 
 void warn_of_unstable(run::Job& job, const std::string& step, const analysis::Definiteness& d,
                       double Omega) {
-  if (d.stable()) return;
+  if (d.stable() && !d.undecided()) return;
   Diagnostic w;
   w.severity = Diagnostic::Severity::warning;
   w.code = "W08";
   w.message = fmt::format("step '{}': {}", step, stability_line(d, Omega));
-  w.hint =
-      "a real structure leaves this state; a path with 'branch', or an imperfection, leads to "
-      "where it goes";
+  w.hint = d.undecided()
+               ? "a modal or stability step about this state says what grows"
+               : "a real structure leaves this state; a path with 'branch', or an imperfection, "
+                 "leads to where it goes";
   job.report.warnings.push_back(w.message);
   job.summary["warnings"].push(w.code + ": " + w.message);
   if (!job.options.quiet) run::print_diagnostics({w});
@@ -55,7 +67,10 @@ void add_stability(io::Value& v, const analysis::Definiteness& d, double Omega) 
     s["stable"] = "not judged: " + left_to_controllers;
     return;
   }
-  s["stable"] = d.stable();
+  if (d.undecided())
+    s["stable"] = "not decided: " + pairs_of_negative_part(d.open);
+  else
+    s["stable"] = d.stable();
   s["unstable directions"] = static_cast<int>(d.negative);
   s["tangent"] = d.symmetric ? "symmetric" : "unsymmetric";
   s["proved"] = d.certain;

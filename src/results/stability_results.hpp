@@ -13,7 +13,7 @@ analysis::Definiteness judge_state(analysis::SteadySystem& running, const system
 /// What is said of an equilibrium that is not judged.
 inline const std::string left_to_controllers =
     "whether controllers hold it is for a modal, stability or sensitivity step";
-/// "unstable equilibrium, 2 directions"; empty when it is stable. At a speed: what that means
+/// "unstable equilibrium, 2 directions", or that it is open; empty when it is stable. At a speed: what that means
 /// there.
 std::string stability_line(const analysis::Definiteness& d, double Omega);
 

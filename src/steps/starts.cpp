@@ -2,6 +2,8 @@
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/stability_results.hpp>
 #include <results/transient_output.hpp>
 #include <run/checkpoint.hpp>
 #include <run/job.hpp>
@@ -151,6 +153,54 @@ void start_in_mode(const run::Job& job, run::StepState& start, const model::Tran
   take_equilibrium(job, linear.equilibrium(), start);
   start.state.q += law.mode_amplitude * found->x.real();
   start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
+}
+
+namespace {
+
+/// The motion that grows fastest about the equilibrium at a start; nothing: none does, or its modes are not
+/// to be had.
+std::optional<analysis::WhirlMode> fastest_growth(const run::Job& job,
+                                                  const run::StepState& start) {
+  try {
+    analysis::Linearizer linear = linearizer_of(job, start);
+    linear.start_from(start.state);
+    analysis::ModesOptions o;
+    o.count = 1;
+    o.real_roots = true;
+    o.judge = true;
+    std::optional<analysis::WhirlMode> fastest;
+    for (const analysis::WhirlMode& m : analysis::whirl_modes(linear, start.speed, o))
+      if (m.growth() > 0 && (!fastest || m.lambda.real() > fastest->lambda.real())) fastest = m;
+    return fastest;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void warn_of_unstable_start(run::Job& job, const model::Step& step, const run::StepState& start,
+                            const analysis::Equilibrium& equilibrium) {
+  analysis::SteadyRotation running = job.steady_rotation_of(start);
+  running.hysteretic = false;
+  analysis::SteadySystem turning(job.system(), running);
+  const analysis::Definiteness d =
+      results::judge_state(turning, equilibrium.state, start.speed, equilibrium.holds(), false);
+  if (d.judged) {
+    results::warn_of_unstable(job, step.name + ", where it begins", d, start.speed);
+    return;
+  }
+  const auto growth = fastest_growth(job, start);
+  if (!growth) return;
+  Diagnostic w;
+  w.code = "W13";
+  w.message = fmt::format(
+      "step '{}': the equilibrium in which it begins is unstable: with its controllers a motion of "
+      "{:.5g} Hz "
+      "grows by {:.3g} 1/s",
+      step.name, to_hz(growth->frequency), growth->lambda.real());
+  w.hint = "undisturbed it may stand there for the whole run; a modal step lists what grows";
+  results::warn(job, std::move(w));
 }
 
 Beginning beginning_of(const run::Job& job, const model::Step& step,

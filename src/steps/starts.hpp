@@ -10,6 +10,10 @@ namespace whirl::steps {
 void start_in_unbalance_response(const run::Job&, run::StepState& start);
 /// @throws Error (E76) when there is no such mode.
 void start_in_mode(const run::Job&, run::StepState& start, const model::TransientStep&);
+/// Says (W08) where a step begins in an equilibrium that is left as soon as anything disturbs it: nothing in
+/// the motion need show that. Of machines with controllers the motions that grow are looked for (W13).
+void warn_of_unstable_start(run::Job&, const model::Step&, const run::StepState& start,
+                            const analysis::Equilibrium& equilibrium);
 /// How a step begins.
 enum class Beginning {
   settled,    ///< at rest or in an equilibrium: a prescribed angle is that of its law

@@ -232,7 +232,7 @@ class SpeedSweep {
   io::Table judged_ = speeds_table();
   std::vector<results::SupportCoefficients> rows_;
   std::vector<Sweep> bearings_;
-  int unstable_ = 0;
+  int unstable_ = 0, undecided_ = 0;  ///< speeds
   bool judges_ = true;  ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
   int drifted_ = 0;                   ///< of them: Newton's method found none that attracts
@@ -302,7 +302,9 @@ void SpeedSweep::judge(double Omega, const run::StepState& state) {
   judged_.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0,
                tangent.certain ? 1 : 0});
   judges_ = judges_ && tangent.judged;
-  if (tangent.stable() || unstable_++ > 0) return;
+  const bool open = tangent.undecided();
+  if (tangent.stable() && !open) return;
+  if ((open ? undecided_ : unstable_)++ > 0) return;
   results::add_stability(s_.summary(), tangent, Omega);
   results::warn_of_unstable(job_, fmt::format("{}, {:.6g} rpm", step_.name, to_rpm(Omega)), tangent,
                             Omega);
@@ -326,9 +328,10 @@ void SpeedSweep::add_coefficients(const run::StepState& state) {
 
 void SpeedSweep::show_equilibria() {
   io::Value& v = s_.summary();
-  if (unstable_ == 0 && judges_)
+  if (undecided_ > 0) v["equilibria not decided"] = undecided_;
+  if (unstable_ == 0 && undecided_ == 0 && judges_)
     v["stability"]["stable"] = true;
-  else if (unstable_ == 0)
+  else if (unstable_ == 0 && undecided_ == 0)
     v["stability"]["stable"] = "not judged: " + results::left_to_controllers;
   v["unstable equilibria"] = unstable_;
   v["speeds"] = static_cast<int>(speeds_.size());

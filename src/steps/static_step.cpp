@@ -311,8 +311,9 @@ void StaticRun::write_tables() {
 }
 
 void StaticRun::say_end(const RunTime& time) const {
-  const std::string kind =
-      tangent_.stable() ? "equilibrium" : results::stability_line(tangent_, 0.0);
+  const std::string kind = tangent_.undecided() ? "equilibrium, open whether it is stable,"
+                           : tangent_.stable()  ? "equilibrium"
+                                                : results::stability_line(tangent_, 0.0);
   const std::string ended =
       path_ ? notes_.front()
             : fmt::format("{} at {:.0f} rpm, {} Newton iterations{}", kind, to_rpm(state_.speed),
@@ -334,6 +335,8 @@ void StaticRun::add_section() {
   if (!tangent_.stable())
     section.text +=
         fmt::format("\n\nIt is an {}.", results::stability_line(tangent_, state_.speed));
+  if (tangent_.undecided())
+    section.text += fmt::format("\n\nOpen: {}.", results::stability_line(tangent_, state_.speed));
   if (!tangent_.judged) section.text += "\n\n" + std::string(results::left_to_controllers) + ".";
   for (const std::string& n : notes_)
     section.text += "\n\n" + n + ".";

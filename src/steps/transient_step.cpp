@@ -148,7 +148,8 @@ void settle_pivots(const run::Job& job, system::State& s) {
 }
 
 /// A start that no transient left: settled as the step asks for.
-void settle_start(run::Job& job, run::StepState& start, const model::TransientStep& law) {
+void settle_start(run::Job& job, const model::Step& step, run::StepState& start,
+                  const model::TransientStep& law) {
   using Start = model::TransientStep::Start;
   if (law.start == Start::rest) return settle_pivots(job, start.state);
   const run::PhaseTimer timer(job, "equilibrium");
@@ -157,7 +158,7 @@ void settle_start(run::Job& job, run::StepState& start, const model::TransientSt
   else if (law.start == Start::unbalance_response)
     start_in_unbalance_response(job, start);
   else
-    job.settle(start, {}, true);
+    warn_of_unstable_start(job, step, start, job.settle(start, {}, true));
 }
 
 bool all_finite(const std::vector<double>& x) {
@@ -218,7 +219,7 @@ run::StepState transient_start(run::Job& job, const model::Step& step,
   const bool steady_motion = beginning == Beginning::settled &&
                              (law.start == Start::unbalance_response || law.start == Start::mode);
   if (step.from.empty() || steady_motion) {
-    settle_start(job, start, law);
+    settle_start(job, step, start, law);
     start.drives.clear();  // the equilibrium has angles of its own
     begin_drives(job, start, beginning);
   }

@@ -443,3 +443,115 @@ TEST(StaticStability, TwoBarsOnHingesAreLocated) {
     }
   }
 }
+
+// A column far beyond its buckling load in bushes of crossed stiffness: every eigenvalue of the static tangent is
+// complex, and what was counted among the real ones, nothing, is no stability.
+TEST(StaticStability, CrossedStiffnessLeavesItOpen) {
+  const auto standing = [](const std::string& crossed) {
+    return R"(format = 1
+[model]
+gravity_direction = "-x"
+[[shaft]]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["s", 2000, 12, 4], ["t", 4000, 12, 8]]
+[[disk]]
+name = "top"
+at = "t:end"
+mass = "60 kg"
+Ip = "0.5 kg.m^2"
+Id = "0.3 kg.m^2"
+[[bearing]]
+name = "foot"
+at = "s:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e8 N/m"
+kzz = "1e8 N/m"
+[[bearing]]
+name = "bush"
+at = "t:end"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+)" + crossed +
+           R"([[step]]
+name = "s"
+type = "static"
+[output]
+report = false
+)";
+  };
+  const DeckRun straight(standing(""));
+  ASSERT_EQ(straight.exit, 0) << straight.log;
+  EXPECT_TRUE(straight.says("unstable equilibrium")) << straight.log;
+  const DeckRun crossed(standing("kyz = \"2e5 N/m\"\nkzy = \"-2e5 N/m\"\n"));
+  ASSERT_EQ(crossed.exit, 0) << crossed.log;
+  EXPECT_TRUE(crossed.says("W08")) << crossed.log;
+  const whirl::io::Value said = crossed.summary("s").at("stability").at("stable");
+  ASSERT_TRUE(said.is_text()) << crossed.log;
+  EXPECT_NE(said.text().find("not decided"), std::string::npos);
+}
+
+// 2e5 N/m of springs less 5e5 N/m of a pull: nothing disturbs the rotor, which stands above its bearing for the
+// whole run. The same of magnets whose control pulls by less than their bias pushes away.
+TEST(StaticStability, TransientsThatBeginInAnUnstableEquilibriumSaySo) {
+  const auto begun = [](const std::string& support) {
+    return R"(format = 1
+[[shaft]]
+name = "rotor"
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "mass"
+at = "body:mid"
+mass = "20 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.1 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "body:mid"
+type = "linear"
+kxx = "1e8 N/m"
+krr = "1e8 N.m/rad"
+)" + support +
+           R"([[probe]]
+name = "p"
+at = "body:mid"
+[[step]]
+name = "run"
+type = "transient"
+start = "static"
+duration = "20 ms"
+[output]
+report = false
+)";
+  };
+  const auto springs = [&](const char* pull) {
+    return begun(
+        std::string(
+            "[[bearing]]\nname = \"k\"\nat = \"body:mid\"\ntype = \"linear\"\nkyy = \"2e5 N/m\"\n"
+            "kzz = \"2e5 N/m\"\n[[bearing]]\nname = \"n\"\nat = \"body:mid\"\ntype = "
+            "\"nonlinear_spring\"\ndirection = \"radial\"\nshape = \"polynomial\"\ncoefficients = "
+            "[\"0 N\", \"") +
+        pull + " N/m\"]\n");
+  };
+  EXPECT_TRUE(DeckRun(springs("-5e5")).says("W08"));
+  EXPECT_FALSE(DeckRun(springs("-1e5")).says("W08"));
+  const auto magnets = [&](const char* gain) {
+    return begun(
+        std::string("[[bearing]]\nname = \"AMB\"\nat = \"body:mid\"\ntype = "
+                    "\"magnetic\"\ncurrent_stiffness "
+                    "= \"200 N/A\"\nposition_stiffness = \"1e6 N/m\"\nsensor_bandwidth = \"10 "
+                    "kHz\"\namplifier_bandwidth = \"2.5 kHz\"\n[[bearing.control]]\ntype = "
+                    "\"pid\"\np = \"") +
+        gain + " A/m\"\ni = \"0 A/(m.s)\"\nd = \"20 A.s/m\"\nlag = \"30 us\"\n");
+  };
+  const DeckRun falls(magnets("4e3"));
+  EXPECT_TRUE(falls.says("W13")) << falls.log;
+  const DeckRun floats(magnets("1.4e4"));
+  EXPECT_FALSE(floats.says("W13")) << floats.log;
+}

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -721,4 +722,142 @@ TEST(UnevenRotors, AtRestLateralModesAreThoseOfAllMotion) {
   EXPECT_GT(all.second / all.first, 1.1);
   EXPECT_NEAR(lateral.first / all.first, 1.0, 1e-6);
   EXPECT_NEAR(lateral.second / all.second, 1.0, 1e-6);
+}
+
+namespace {
+
+/// A rigid rotor of 1 m on two bearings of 1e7 and 6e6 N/m and 20 N s/m, its disk of 50 kg in the middle: it
+/// shifts and tilts, and neither knows of the other.
+std::string tilting_rotor(double Jy, double Jz, const std::string& speed) {
+  return fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "bar"
+[[shaft.section]]
+name = "left"
+length = "500 mm"
+rigid = true
+[[shaft.section]]
+name = "right"
+length = "500 mm"
+rigid = true
+[[disk]]
+name = "D"
+at = "left:end"
+mass = "50 kg"
+inertia = ["3 kg.m^2", "{} kg.m^2", "{} kg.m^2", "0 kg.m^2", "0 kg.m^2", "0 kg.m^2"]
+[[bearing]]
+name = "A"
+at = "left:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e7 N/m"
+kzz = "6e6 N/m"
+cyy = "20 N.s/m"
+czz = "20 N.s/m"
+[[bearing]]
+name = "B"
+at = "right:end"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "6e6 N/m"
+cyy = "20 N.s/m"
+czz = "20 N.s/m"
+[[step]]
+name = "s"
+type = "stability"
+speed = {}
+)",
+                     Jy, Jz, speed) +
+         no_report;
+}
+
+/// Growth of its tilt, 1/s, by the angular momentum over half a turn: with tilts b about y and z and the momentum
+/// H = I(theta) b' + Jx W (b_z, -b_y), H' = -K b - C b'.
+double growth_of_tilt(double Jy, double Jz, double W) {
+  constexpr double Jx = 3.0, C = 10.0;
+  constexpr std::array<double, 2> K{3e6, 5e6};
+  using State = std::array<double, 4>;
+  const auto rate = [&](double t, const State& x) {
+    const double c = std::cos(W * t), s = std::sin(W * t);
+    const double yy = Jy * c * c + Jz * s * s, zz = Jy * s * s + Jz * c * c, yz = (Jy - Jz) * c * s;
+    const double hy = x[2] - Jx * W * x[1], hz = x[3] + Jx * W * x[0];
+    const double det = yy * zz - yz * yz;
+    const double by = (zz * hy - yz * hz) / det, bz = (yy * hz - yz * hy) / det;
+    return State{by, bz, -K[0] * x[0] - C * by, -K[1] * x[1] - C * bz};
+  };
+  constexpr int steps = 4000;
+  const double period = pi / W, h = period / steps;
+  std::array<State, 4> turned{};  // columns
+  for (std::size_t k = 0; k < 4; ++k) {
+    State x{};
+    x[k] = 1.0;
+    const auto moved = [&](const State& v, double by) {
+      State y = x;
+      for (std::size_t i = 0; i < 4; ++i)
+        y[i] += by * v[i];
+      return y;
+    };
+    for (int n = 0; n < steps; ++n) {
+      const double t = n * h;
+      const State a = rate(t, x), b = rate(t + 0.5 * h, moved(a, 0.5 * h)),
+                  c = rate(t + 0.5 * h, moved(b, 0.5 * h)), d = rate(t + h, moved(c, h));
+      for (std::size_t i = 0; i < 4; ++i)
+        x[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
+    }
+    turned[k] = x;
+  }
+  // the largest multiplier, by squaring again and again
+  double growth = 0.0, weight = 1.0;
+  for (int n = 0; n < 40; ++n) {
+    double size = 0.0;
+    for (const State& x : turned)
+      for (const double v : x)
+        size = std::max(size, std::abs(v));
+    for (State& x : turned)
+      for (double& v : x)
+        v /= size;
+    growth += weight * std::log(size);
+    weight *= 0.5;
+    const std::array<State, 4> m = turned;
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < 4; ++i) {
+        turned[k][i] = 0.0;
+        for (std::size_t j = 0; j < 4; ++j)
+          turned[k][i] += m[j][i] * m[k][j];
+      }
+  }
+  return growth / period;
+}
+
+}  // namespace
+
+// Nothing is displaced where the rotor stands: growth was left out with the copies of other motions, and the
+// rotor certified not to grow.
+TEST(UnevenRotors, TiltAboutTheMiddleGrows) {
+  const DeckRun first(
+      tilting_rotor(4.5, 5.5, R"({ values = ["6400 rpm", "6500 rpm", "6600 rpm"] })"));
+  ASSERT_EQ(first.exit, 0) << first.log;
+  const Columns growth = first.csv("s_growth.csv");
+  ASSERT_GE(growth.rows.size(), 3u);
+  bool seen = false;
+  for (const auto& row : growth.rows) {
+    const double W = row[0] * pi / 30;
+    // shift dies by c/m, tilt by what the momentum says
+    const double right = std::max(growth_of_tilt(4.5, 5.5, W), -20.0 / 50.0);
+    EXPECT_NEAR(row[1], right, 1e-4 * std::abs(right)) << row[0];
+    seen = seen || right > 1.0;
+  }
+  EXPECT_TRUE(seen);
+  const DeckRun second(
+      tilting_rotor(4.0, 6.0, R"({ start = "8200 rpm", stop = "11500 rpm", points = 6 })"));
+  ASSERT_EQ(second.exit, 0) << second.log;
+  const Columns bands = second.csv("s_bands.csv");
+  ASSERT_EQ(bands.rows.size(), 2u) << second.log;
+  for (const double edge : {bands.rows[0][0], bands.rows[0][1], bands.rows[1][0]}) {
+    const double below = growth_of_tilt(4.0, 6.0, edge * pi / 30 * (1 - 1e-5)),
+                 above = growth_of_tilt(4.0, 6.0, edge * pi / 30 * (1 + 1e-5));
+    EXPECT_LT(below * above, 0.0) << edge;
+  }
 }

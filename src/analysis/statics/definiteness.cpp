@@ -170,10 +170,13 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
   B.set_zero();
   for (Index i = 0; i < K.pattern().size(); ++i)
     B.block(K.pattern().diagonal(i)).diagonal() = D.segment<6>(6 * i);
-  out.negative = 0;
+  out.negative = out.open = 0;
   try {
     for (const la::Mode& m : la::linear_modes(K, B, free, 8)) {
-      if (m.lambda.real() >= 0.0 || std::abs(m.lambda.imag()) > 1e-9 * std::abs(m.lambda)) continue;
+      const double size = std::abs(m.lambda);
+      const bool real = std::abs(m.lambda.imag()) <= 1e-9 * size;
+      if (!real && m.lambda.real() < -1e-9 * size) ++out.open;
+      if (!real || m.lambda.real() >= 0.0) continue;
       ++out.negative;
       if (out.lowest < m.lambda.real()) continue;
       out.lowest = m.lambda.real();
@@ -184,7 +187,7 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
       scale_shape(out.shape, system);
     }
   } catch (const Error&) {
-    out.negative = 0;
+    out.negative = out.open = 0;
   }
   // one more than were found where the sign of det K says so
   if (out.sign != 0 && (out.negative % 2 != 0) != (out.sign < 0)) ++out.negative;

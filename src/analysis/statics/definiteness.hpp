@@ -11,7 +11,9 @@
 //       divergence;
 //     certain
 //   det K < 0: an odd number of real roots lambda > 0, unstable; certain
-//   otherwise: the negative real eigenvalues among those of least size; counted, not proved
+//   otherwise: the negative real eigenvalues among those of least size; counted, not proved. Complex
+//       pairs with a negative real part among them (a column beyond its buckling load in a
+//       cross-coupled bush) leave it open: masses and damping decide
 // So too for a symmetric K that cannot be factored. With controllers, whose signals are states of
 // first order, small eigenvalues of K say nothing: det K < 0 remains, and where it is positive
 // nothing is claimed (judged = false).
@@ -26,6 +28,7 @@ namespace whirl::analysis {
 
 struct Definiteness {
   Index negative = 0;  ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
+  Index open = 0;      ///< complex pairs of negative real part (unsymmetric K)
   bool symmetric = true;
   bool certain = true;  ///< false: counted, not proved
   bool judged = true;   ///< false: controllers decide, and nothing is said here
@@ -36,6 +39,8 @@ struct Definiteness {
       shape;  ///< its vector (u, phi, gamma) a node, largest displacement 1; only when negative > 0
 
   bool stable() const { return negative == 0; }
+  /// Whether it is stable depends on masses and damping.
+  bool undecided() const { return negative == 0 && open > 0; }
 };
 
 /// Judges a tangent. free: 1 where q is unknown. length: size of the model, m. Directions that K
