@@ -233,7 +233,7 @@ class SpeedSweep {
   std::vector<results::SupportCoefficients> rows_;
   std::vector<Sweep> bearings_;
   int unstable_ = 0, undecided_ = 0;  ///< speeds
-  bool judges_ = true;  ///< false: controllers decide whether some are stable
+  bool judges_ = true;                ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
   int drifted_ = 0;                   ///< of them: Newton's method found none that attracts
   results::StaticAccuracy accuracy_;  ///< the largest error

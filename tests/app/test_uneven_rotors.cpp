@@ -861,3 +861,16 @@ TEST(UnevenRotors, TiltAboutTheMiddleGrows) {
     EXPECT_LT(below * above, 0.0) << edge;
   }
 }
+
+// Between the speeds asked for, and a tenth of their distance from where the mean inertia places the resonance.
+TEST(UnevenRotors, ABandThatWhatVariesHasMovedIsFound) {
+  const DeckRun d(tilting_rotor(4.0, 6.0, R"({ values = ["6000 rpm", "6500 rpm", "7000 rpm"] })"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns bands = d.csv("s_bands.csv");
+  ASSERT_EQ(bands.rows.size(), 1u) << d.log;
+  for (const double edge : {bands.rows[0][0], bands.rows[0][1]})
+    EXPECT_LT(growth_of_tilt(4.0, 6.0, edge * pi / 30 * (1 - 1e-5)) *
+                  growth_of_tilt(4.0, 6.0, edge * pi / 30 * (1 + 1e-5)),
+              0.0)
+        << edge;
+}

@@ -66,16 +66,55 @@ class BandSearch {
     return most;
   }
   Visited visit(double Omega) { return {Omega, at(Omega)}; }
-  /// Whether one of the few motions nearest a frequency in rotating axes grows: a look that costs little.
-  bool grows_near(double Omega, double frequency) {
+  /// The few motions nearest a frequency in rotating axes: a look that costs little.
+  struct Near {
+    bool grows = false;
+    double gap = infinity;  ///< rad/s, between the two frequencies that are nearest to that
+    double frequency = 0;   ///< rad/s, in the middle of them
+  };
+  Near look_near(double Omega, double frequency) {
     ++evaluations;
     la::ModeOptions l;
     l.count = 4;
     l.shift = Complex(0.0, frequency);
     la::ModeSolver solver(axes_.pattern(), axes_.active(), l);
     const std::vector<la::Mode>& modes = solver.solve(axes_.at(sense_ * Omega, l.shift.value()));
-    return std::any_of(modes.begin(), modes.end(),
-                       [&](const la::Mode& x) { return x.lambda.real() > noise(Omega); });
+    Near out;
+    std::vector<double> frequencies;
+    for (const la::Mode& x : modes) {
+      out.grows = out.grows || x.lambda.real() > noise(Omega);
+      for (const double w : {x.lambda.imag(), -x.lambda.imag()})
+        frequencies.push_back(w);
+    }
+    if (frequencies.size() < 2) return out;
+    std::partial_sort(
+        frequencies.begin(), frequencies.begin() + 2, frequencies.end(),
+        [&](double a, double b) { return std::abs(a - frequency) < std::abs(b - frequency); });
+    out.gap = std::abs(frequencies[0] - frequencies[1]);
+    out.frequency = std::max(0.0, 0.5 * (frequencies[0] + frequencies[1]));
+    return out;
+  }
+  /// A speed about a resonance at which something grows. The mean matrices place it but roughly: what varies
+  /// moves frequencies by its square, and the gap that is left between two says how far it is away.
+  /// @param low, high  speeds of the search: none beyond them
+  std::optional<double> growing_about(const Resonance& r, double low, double high) {
+    constexpr int rounds = 3;
+    constexpr double beside = 0.1;  // of the speed
+    const Near first = look_near(r.speed, r.frequency);
+    if (first.grows) return r.speed;
+    for (const double side : {1.0, -1.0}) {
+      Near last = first;
+      double Omega = r.speed;
+      for (int k = 0; k < rounds; ++k) {
+        Omega += side * last.gap / std::abs(r.slope);
+        if (!(std::abs(Omega - r.speed) < beside * r.speed && Omega > low && Omega < high)) break;
+        const Near now = look_near(Omega, last.frequency);
+        if (now.grows) return Omega;
+        if (!(now.gap < last.gap)) break;
+        last = now;
+      }
+    }
+    return std::nullopt;
   }
   /// The same motion as at a speed near by; where it cannot be followed, the fastest of all.
   Growth follow(double Omega, const Growth& near) {
@@ -356,7 +395,8 @@ bool visit_resonances(BandSearch& search, const RotatingAxes& axes, double sense
   const auto resonances = axes.resonances(speeds, sense);
   if (!resonances) return false;
   for (const Resonance& r : *resonances)
-    if (search.grows_near(r.speed, r.frequency)) samples.push_back(search.visit(r.speed));
+    if (const auto speed = search.growing_about(r, speeds.front(), speeds.back()))
+      samples.push_back(search.visit(*speed));
   std::sort(samples.begin(), samples.end(),
             [](const Visited& x, const Visited& y) { return x.speed < y.speed; });
   return true;

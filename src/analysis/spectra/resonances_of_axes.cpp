@@ -76,7 +76,7 @@ std::optional<std::vector<Resonance>> RotatingAxes::resonances(const std::vector
     const double share = at_a / (at_a - at_b);
     const double w = a.w[j] + share * (b.w[j] - a.w[j]);
     const double Omega = a.speed + share * (b.speed - a.speed);
-    out.push_back({Omega, std::abs(w - ratio * Omega)});
+    out.push_back({Omega, std::abs(w - ratio * Omega), (at_b - at_a) / (b.speed - a.speed)});
   };
   for (std::size_t k = 0; k + 1 < known.size(); ++k) {
     const Frequencies &a = known[k], &b = known[k + 1];

@@ -30,6 +30,7 @@ namespace whirl::analysis {
 struct Resonance {
   double speed = 0;      ///< of the reference, rad/s
   double frequency = 0;  ///< of one of them there, in rotating axes, rad/s
+  double slope = 0;      ///< by which their frequencies part, rad/s for every rad/s of the speed
 };
 
 /// H of Hill's equations where the matrices are periodic.
