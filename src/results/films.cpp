@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace whirl::results {
 namespace {
@@ -389,18 +390,92 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
 
 namespace {
 
+/// The heat balance of a bearing's films, and their oil; null: it has none.
+struct Heated {
+  const model::FilmHeat* heat = nullptr;
+  const model::Oil* oil = nullptr;
+};
+Heated heated(const model::Bearing& b) {
+  const auto of = [](const auto& law) {
+    return law.flow.heat ? Heated{&*law.flow.heat, &law.oil} : Heated{};
+  };
+  if (const auto* journal = std::get_if<model::FiniteJournal>(&b.law)) return of(*journal);
+  const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
+  return pads ? of(*pads) : Heated{};
+}
+
 /// Whether its temperatures go with the motion, late as they should be.
 bool follows(const model::Bearing& b, bool linear) {
-  const auto in_time = [linear](const model::FilmFlow& flow) {
-    return !linear && flow.heat && std::isfinite(flow.heat->time_constant);
-  };
-  if (const auto* journal = std::get_if<model::FiniteJournal>(&b.law))
-    return in_time(journal->flow);
-  const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
-  return pads && in_time(pads->flow);
+  const model::FilmHeat* heat = heated(b).heat;
+  return !linear && heat && std::isfinite(heat->time_constant);
+}
+
+/// Heat that grooves make, W: hot oil that enters a pad though the one before lets out less.
+struct GrooveHeat {
+  double made = 0, loss = 0;
+  std::vector<std::size_t> pads;  ///< behind such grooves, from 1
+  double share() const { return loss > 0 ? made / loss : 0.0; }
+};
+
+GrooveHeat heat_of_grooves(const SupportCoefficients& c, const Heated& of) {
+  constexpr double counts = 0.01;  // of the loss, of one groove
+  const FilmResults& films = *c.films;
+  const std::vector<elements::PadTemperatures>& at = films.heat->pads;
+  const std::size_t n = films.pads.size();
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return at[a].theta.front() < at[b].theta.front();
+  });
+  if (c.spin < 0) std::reverse(order.begin(), order.end());
+  GrooveHeat out;
+  for (const elements::FilmStanding& s : films.pads)
+    out.loss += s.power;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = order[i], before = order[(i + n - 1) % n];
+    const double missing = of.heat->carry_over * films.pads[k].inflow - films.pads[before].outflow;
+    const double made = of.oil->density * of.heat->specific_heat * missing *
+                        (at[before].out - of.heat->supply_temperature);
+    if (!(made > counts * out.loss)) continue;
+    out.made += made;
+    out.pads.push_back(k + 1);
+  }
+  std::sort(out.pads.begin(), out.pads.end());
+  return out;
 }
 
 }  // namespace
+
+void warn_of_hot_grooves(run::Job& job, const std::string& step,
+                         std::span<const SupportCoefficients> list) {
+  for (const model::Bearing& b : job.model.bearings) {
+    const Heated of = heated(b);
+    if (!of.heat) continue;
+    GrooveHeat worst;
+    double spin = 0.0;
+    for (const SupportCoefficients& c : list) {
+      if (c.name != b.name || !c.films || !c.films->heat || c.spin == 0.0) continue;
+      GrooveHeat here = heat_of_grooves(c, of);
+      if (!(here.share() > worst.share())) continue;
+      worst = std::move(here);
+      spin = c.spin;
+    }
+    if (worst.pads.empty()) continue;
+    Diagnostic d;
+    d.code = "W03";
+    d.message = fmt::format(
+        "step '{}': bearing '{}' at {:.6g} rpm: with carry_over = {:.4g} the grooves before "
+        "pad{} {} take in more hot oil than the pads before them let out, which makes {:.4g} W "
+        "beside a loss of {:.4g} W: the temperatures lean on that",
+        step, b.name, to_rpm(spin), of.heat->carry_over, worst.pads.size() == 1 ? "" : "s",
+        fmt::join(worst.pads, ", "), worst.made, worst.loss);
+    d.hint =
+        "the balance closes with a carry_over of no more than the flow out of the pad before over "
+        "that into the next (table of films)";
+    d.where = b.where;
+    warn(job, std::move(d));
+  }
+}
 
 void report_kept_films(run::Job& job, const std::string& step, const system::State& end,
                        bool linear) {

@@ -140,6 +140,10 @@ std::optional<plot::Figure> draw_film_trends(const std::string& name,
 /// warning W03.
 void warn_of_turbulence(run::Job& job, const std::string& step,
                         std::span<const SupportCoefficients> list);
+/// Heat balances in which grooves make heat, hot oil entering a pad that has not left the one before; the worst
+/// state of each bearing: warning W03.
+void warn_of_hot_grooves(run::Job& job, const std::string& step,
+                         std::span<const SupportCoefficients> list);
 /// What a motion in time left as it began: of each film with heat the viscosity that its balance in
 /// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
 /// apart: warning W03.

@@ -152,6 +152,34 @@ TEST(HotFilms, FillonFourPads) {
     EXPECT_NEAR(f.all(angle), 270, 90);
 }
 
+// carry_over is a share of what enters a pad: where the pad before lets out less than that, the groove between
+// them makes heat. The flows and temperatures of the table say how much.
+TEST(HotFilms, GroovesThatMakeHeatAreSaid) {
+  const DeckRun d(rotor(four_pads + heat()));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Films f(d, 4);
+  const double loss = f.pad(4, "power loss [W]");
+  double made = 0;
+  std::string pads;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t before = (k + 3) % 4;
+    const double missing = 0.75 * f.pad(k, "inflow [m^3/s]") - f.pad(before, "outflow [m^3/s]");
+    const double heat_there = 860.0 * 1951.8 * missing * (f.pad(before, "oil out [degC]") - 40.0);
+    if (heat_there < 0.01 * loss) continue;
+    made += heat_there;
+    pads += (pads.empty() ? "" : ", ") + std::to_string(k + 1);
+  }
+  EXPECT_GT(made, loss);
+  EXPECT_TRUE(d.says(fmt::format("the grooves before pads {} take in more hot oil", pads)))
+      << d.log;
+  EXPECT_TRUE(d.says(fmt::format("makes {:.4g} W beside a loss of {:.4g} W", made, loss)))
+      << made << " W\n"
+      << d.log;
+  const DeckRun little(rotor(four_pads + heat(", carry_over = 0.2")));
+  ASSERT_EQ(little.exit, 0) << little.log;
+  EXPECT_FALSE(little.says("more hot oil")) << little.log;
+}
+
 TEST(HotFilms, KeysOfHeatMatter) {
   const double base = films_of(four_pads + heat(), 4).hottest();
   const auto with = [](const std::string& more) {
