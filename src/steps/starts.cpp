@@ -194,11 +194,13 @@ void warn_of_unstable_start(run::Job& job, const model::Step& step, const run::S
   if (!growth) return;
   Diagnostic w;
   w.code = "W13";
+  const std::string motion = growth->frequency > 0
+                                 ? fmt::format("a motion of {:.5g} Hz", to_hz(growth->frequency))
+                                 : "a motion that does not oscillate";
   w.message = fmt::format(
-      "step '{}': the equilibrium in which it begins is unstable: with its controllers a motion of "
-      "{:.5g} Hz "
-      "grows by {:.3g} 1/s",
-      step.name, to_hz(growth->frequency), growth->lambda.real());
+      "step '{}': the equilibrium in which it begins is unstable: with its controllers {} grows by "
+      "{:.3g} 1/s",
+      step.name, motion, growth->lambda.real());
   w.hint = "undisturbed it may stand there for the whole run; a modal step lists what grows";
   results::warn(job, std::move(w));
 }

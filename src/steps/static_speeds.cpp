@@ -305,7 +305,8 @@ void SpeedSweep::judge(double Omega, const run::StepState& state) {
   const bool open = tangent.undecided();
   if (tangent.stable() && !open) return;
   if ((open ? undecided_ : unstable_)++ > 0) return;
-  results::add_stability(s_.summary(), tangent, Omega);
+  // of those that are unstable the summary speaks first
+  if (!open || unstable_ == 0) results::add_stability(s_.summary(), tangent, Omega);
   results::warn_of_unstable(job_, fmt::format("{}, {:.6g} rpm", step_.name, to_rpm(Omega)), tangent,
                             Omega);
   if (tangent.shape.size() == 0) return;

@@ -157,8 +157,10 @@ void settle_start(run::Job& job, const model::Step& step, run::StepState& start,
     start_in_mode(job, start, law);
   else if (law.start == Start::unbalance_response)
     start_in_unbalance_response(job, start);
-  else
-    warn_of_unstable_start(job, step, start, job.settle(start, {}, true));
+  else {
+    const analysis::Equilibrium found = job.settle(start, {}, true);
+    warn_of_unstable_start(job, step, start, found);
+  }
 }
 
 bool all_finite(const std::vector<double>& x) {

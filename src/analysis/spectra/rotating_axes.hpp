@@ -173,6 +173,9 @@ class RotatingAxes {
   /// Takes compliances in series into account, whose moments have the harmonics of the motion. They are
   /// not in out. @pre the equilibrium is at this speed.
   void add_series(double Omega, const std::vector<Index>& orders, la::MCK& out);
+  /// x exp(lambda t) as the motion exp((lambda + i h step w) t) of the harmonic h, in the parts of at();
+  /// w: speed of the axes, rad/s.
+  la::Mode copy(const la::Mode& mean, Index h, double w) const;
   /// The equilibrium at hand serves this speed too.
   bool still_balanced(double Omega);
   Linearizer& linear_;
@@ -186,11 +189,8 @@ class RotatingAxes {
   std::unique_ptr<la::BlockPattern> own_pattern_;
   std::vector<unsigned char> active_;
   double arm_;  ///< m, at which tilts and moments compare with displacements and forces
-  /// x exp(lambda t) as the motion exp((lambda + i h step w) t) of the harmonic h, in the parts of at();
-  /// w: speed of the axes, rad/s.
-  la::Mode copy(const la::Mode& mean, Index h, double w) const;
   la::MCK turned_, first_, raw_, hill_;
-  double hill_speed_ = 0;        ///< of the axes, rad/s, there
+  double hill_speed_ = 0;        ///< of the axes, rad/s, in hill_
   std::vector<Index> changing_;  ///< of the pattern's blocks: of changes_; -1: it does not
   std::vector<Changes> changes_;
   std::unique_ptr<HarmonicBalance> balance_, odd_balance_;  ///< made when first wanted

@@ -274,10 +274,6 @@ void WhirlSolver::solve_hysteretic(double Omega) {
     for (const la::Mode& mode : group) {
       const auto settled = settle_rate(Omega, mode);
       if (!settled && options_.certify) continue;  // the count says whether it is missed
-      // what hardly swings (viscous damping of massless nodes turns with the rotor, where hysteretic has no
-      // sense) is in no list
-      const bool dies = mode.lambda.real() < 0.0 && !la::oscillates(mode.lambda);
-      if (!settled && dies) continue;
       if (!settled)
         throw run_error("E77",
                         fmt::format("hysteretic damping: a whirl mode was lost on the way to its "
