@@ -262,12 +262,16 @@ class Batch final : public Elements<K::n_nodes, K::width> {
         typename Base::Seen seen;
         Base::see(w, i, seen);
         constexpr std::size_t own = K::own, first = static_cast<std::size_t>(N) - own;
-        std::array<double, own> values;
-        for (std::size_t k = 0; k < own; ++k)
-          values[k] = q[6 * nodes_[i][first + k]];
+        constexpr std::size_t each = own_each();
+        std::array<double, own * each> values;
+        const auto unknown = [&](std::size_t k) {
+          return 6 * nodes_[i][first + k / each] + static_cast<Index>(k % each);
+        };
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k] = q[unknown(k)];
         elements_[i].relax(seen.x, w.context, values);
-        for (std::size_t k = 0; k < own; ++k)
-          q[6 * nodes_[i][first + k]] = values[k];
+        for (std::size_t k = 0; k < values.size(); ++k)
+          q[unknown(k)] = values[k];
       }
     else {
       (void)w;
@@ -333,6 +337,13 @@ class Batch final : public Elements<K::n_nodes, K::width> {
   }
 
  private:
+  /// Unknowns of each of an element's own nodes.
+  static constexpr std::size_t own_each() {
+    if constexpr (requires { K::own_each; })
+      return K::own_each;
+    else
+      return 1;
+  }
   static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) {
     k.region(x);
   };

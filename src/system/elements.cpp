@@ -277,5 +277,6 @@ template class Elements<4, 7>;
 template class Elements<5, 7>;
 template class Elements<6, 7>;
 template class Elements<7, 7>;
+template class Elements<8, 7>;
 
 }  // namespace whirl::system

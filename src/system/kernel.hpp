@@ -41,8 +41,9 @@
 //
 // Optional: own = n and void relax(const Nodes<>&, const Context&, std::array<double, n>&) const: the values
 // of its last n nodes, which are scalars that no other element touches, at which they are in balance
-// at rest, everything else being where it is. Statics begins there, and goes back there when
-// Newton's method finds no way. What it cannot balance it leaves.
+// at rest, everything else being where it is. With own_each = k these have k unknowns each
+// (NodeDef::scalars), and the array those of one node after the other. Statics begins there, and goes
+// back there when Newton's method finds no way. What it cannot balance it leaves.
 //
 // Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents
 // (has_* false) are never touched. Kernels do not allocate, throw, or branch on physics that the

@@ -97,7 +97,7 @@ void Builder::hold_untouched() {
   System& s = system_;
   const std::vector<int> width = list_widths();
   for (Index i = 0; i < s.nodes(); ++i) {
-    const int first_free = s.defs_[at(i)].scalar ? 1
+    const int first_free = s.defs_[at(i)].scalar ? s.defs_[at(i)].scalars
                            : width[at(i)] == 7   ? 6
                            : width[at(i)] == 3   ? 3
                                                  : 0;

@@ -25,9 +25,10 @@ struct NodeDef {
   Vec3 position = Vec3::Zero();  ///< reference position, m, global axes
   Index line = 0;                ///< shaft line whose chart it uses
   std::string name;              ///< for messages: "node at 0.25 m of shaft 'hp'"
-  bool scalar = false;  ///< an internal unknown: only component 0 exists, gravity does not act
+  bool scalar = false;  ///< an internal unknown: component 0 alone exists, gravity does not act
   bool signal = false;  ///< a scalar that a controller stores: no coordinate of what moves
   bool rate = false;    ///< a scalar that is a spin or a temperature: its row does no work on it
+  int scalars = 1;      ///< of a scalar: so many of components 0 to 2 exist
 };
 
 /// A complete state: copy it to checkpoint.

@@ -501,7 +501,7 @@ namespace {
 /// No internal unknown has been anywhere yet.
 bool has_fresh_scalars(const system::System& s, const VecX& q) {
   for (Index i = 0; i < s.nodes(); ++i)
-    if (s.node(i).scalar && q[6 * i] != 0.0) return false;
+    if (s.node(i).scalar && !q.segment(6 * i, s.node(i).scalars).isZero(0.0)) return false;
   return true;
 }
 
@@ -523,9 +523,9 @@ bool EquilibriumSolver::attracts(double Omega, const system::State& s) {
   // a pad by itself; of two of them the tangent as a whole may say nothing
   const system::System& sys = running_.system();
   for (Index i = 0; i < sys.nodes(); ++i)
-    if (sys.node(i).scalar && free_[at(6 * i)] &&
-        matrices_.K.block(matrices_.K.pattern().diagonal(i))(0, 0) < 0.0)
-      return false;
+    for (Index k = 0; sys.node(i).scalar && k < sys.node(i).scalars; ++k)
+      if (free_[at(6 * i + k)] && matrices_.K.block(matrices_.K.pattern().diagonal(i))(k, k) < 0.0)
+        return false;
   const Definiteness d = judge_tangent(matrices_.K, free_, running_.system(), length_, false);
   return !d.judged || d.stable();
 }
