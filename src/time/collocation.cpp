@@ -24,7 +24,11 @@
 //
 // Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice. Of a linear
 // problem there is none: its one iteration begins at free motion, along which the residuals of all
-// stages share their products with the matrices (AffineProblem).
+// stages share their products with the matrices (AffineProblem). Where Newton fails or is slow, unknowns
+// without mass begin the next attempts at the rates they have: their accelerations are differences
+// of rates over the step with what Newton left of its error over h, which extrapolated grows as steps get
+// shorter. A rate that is barely held (the tilt of a pad whose film has all but gone) never came back.
+// After an easy attempt alone one would be slow again, every other one, and steps would not grow.
 //
 // Error. Of all embedded formulas on {t0, t_1..t_s} of order s only one exists up to a factor: its
 // defect is that of the collocation polynomials u (of q) and w (of v) at the step's start,
@@ -449,7 +453,13 @@ Stepper::Attempt Collocation::attempt(double h) {
     }
   }
   predict(h, have_history_);
+  if (hard_ > 0)
+    for (int i = 0; i < s_; ++i)
+      y_.col(i) = y_.col(i).cwiseProduct(initial_.dynamic());
   newton(h, out);
+  constexpr int wary = 8;  // attempts
+  const bool slow = out.status == StepStatus::newton || 2 * out.iterations >= options_.max_newton;
+  if (out.status != StepStatus::domain) hard_ = hard_ > 0 ? hard_ - 1 : slow ? wary : 0;
   if (out.status != StepStatus::ok) return out;
   finish(h);
   // Gauss: the end is no stage. Its residual shows whether the model holds there, and serves the
@@ -580,8 +590,8 @@ bool Collocation::dense_entries(double theta, std::span<const Index> entries, Re
 }
 
 void Collocation::save_history(std::vector<double>& out) const {
-  out.insert(out.end(),
-             {h_last_, theta_start_, have_history_ ? 1.0 : 0.0, have_start_residual_ ? 1.0 : 0.0});
+  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0,
+                         have_start_residual_ ? 1.0 : 0.0, static_cast<double>(hard_)});
   newton_.save(out);
   out.insert(out.end(), a_last_.data(), a_last_.data() + a_last_.size());
   out.insert(out.end(), start_residual_.data(), start_residual_.data() + n_);
@@ -592,6 +602,7 @@ const double* Collocation::restore_history(const double* in) {
   theta_start_ = *in++;
   have_history_ = *in++ != 0.0;
   have_start_residual_ = *in++ != 0.0;
+  hard_ = static_cast<int>(*in++);
   have_bound_ = false;
   in = newton_.restore(in);
   std::copy_n(in, a_last_.size(), a_last_.data());

@@ -100,6 +100,7 @@ class Collocation final : public Stepper {
   MatX a_last_;
   double h_last_ = 0.0, theta_start_ = 1.0;
   bool have_history_ = false;
+  int hard_ = 0;  ///< attempts to come without extrapolated massless unknowns, as Newton was slow
 };
 
 }  // namespace whirl::time

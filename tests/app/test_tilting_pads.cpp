@@ -3,6 +3,8 @@
 #include "deck_run.hpp"
 #include "film_rotor.hpp"
 
+#include <core/types.hpp>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,6 +12,7 @@
 
 namespace {
 
+using whirl::Vec2;
 using whirl::test::Columns;
 using whirl::test::DeckRun;
 
@@ -568,6 +571,130 @@ every = "1 ms"
     EXPECT_GT(radius, 2e-7);
     EXPECT_LT(std::abs(2.0 / rows_a_turn * sum - expected), 1e-4 * radius) << axis;
   }
+}
+
+namespace {
+
+/// A rigid rotor of 400 kg on the bearings of docs/elements/tilting_pads.md. more: keys of both.
+std::string documented(const std::string& more, const std::string& rest) {
+  const auto end = [&](const char* name, const char* at) {
+    return fmt::format(R"([[bearing]]
+name = "{}"
+at = "body:{}"
+type = "tilting_pad"
+first_pivot = "-54 deg"
+preload = 0.3
+diameter = "100 mm"
+length = "50 mm"
+clearance = "80 um"
+iso_vg = 32
+temperature = "55 degC"
+{}
+)",
+                       name, at, more);
+  };
+  return R"(format = 1
+[model]
+gravity = "9.81 m/s^2"
+[[shaft]]
+name = "rotor"
+[[shaft.section]]
+name = "body"
+length = "1 m"
+rigid = true
+[[disk]]
+name = "mass"
+at = "body:mid"
+mass = "400 kg"
+Ip = "5 kg.m^2"
+Id = "20 kg.m^2"
+[[bearing]]
+name = "thrust"
+at = "body:start"
+type = "linear"
+kxx = "1e8 N/m"
+[[probe]]
+name = "DE"
+at = "body:start"
+)" + end("DE", "start") +
+         end("NDE", "end") + rest + "[output]\nevery = \"0.1 ms\"\nreport = false\n";
+}
+
+struct Journal {
+  std::vector<Vec2> at;  ///< (y, z), m
+  double newton;
+};
+Journal journal_of(const std::string& deck) {
+  const DeckRun d(deck);
+  EXPECT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("run.csv");
+  Journal out;
+  for (const auto& row : t.rows)
+    out.at.emplace_back(row[t.column("DE.y [m]")], row[t.column("DE.z [m]")]);
+  out.newton = d.summary("run").at("integrator").at("Newton iterations").number();
+  return out;
+}
+/// The largest way between two motions over the clearance.
+double apart(const Journal& a, const Journal& b) {
+  EXPECT_EQ(a.at.size(), b.at.size());
+  double worst = 0.0;
+  for (std::size_t k = 0; k < std::min(a.at.size(), b.at.size()); ++k)
+    worst = std::max(worst, (a.at[k] - b.at[k]).norm() / 80e-6);
+  return worst;
+}
+
+}  // namespace
+
+namespace {
+
+const std::string orbit = R"([[unbalance]]
+at = "mass"
+amount = "20 kg.mm"
+[[drive]]
+name = "m"
+at = "body:mid"
+type = "speed"
+speed = "6000 rpm"
+[[step]]
+name = "run"
+type = "transient"
+duration = "0.05 s"
+start = "static"
+)";
+
+}  // namespace
+
+// Half of the clearance, round which every pad loses its load once a turn. A pad without inertia moves as
+// ones with ever less do, the nearer.
+TEST(TiltingPads, MasslessPadsLoseTheirLoadInMotion) {
+  const Journal none = journal_of(documented("", orbit));
+  EXPECT_LT(none.newton, 2e4);
+  double largest = 0.0;
+  for (const Vec2& place : none.at)
+    largest = std::max(largest, place.norm() / 80e-6);
+  EXPECT_GT(largest, 0.5);
+  const double some = apart(none, journal_of(documented("inertia = \"1.2e-4 kg.m^2\"\n", orbit))),
+               less = apart(none, journal_of(documented("inertia = \"3e-5 kg.m^2\"\n", orbit)));
+  EXPECT_LT(some, 0.05);
+  EXPECT_LT(less, 0.7 * some);
+}
+
+// At rest no film says where a pad stands; the rotor falls into its bearings and is run up.
+TEST(TiltingPads, MasslessPadsStartFromStandstill) {
+  const std::string up = R"([[drive]]
+name = "m"
+at = "body:mid"
+type = "speed"
+speed = { type = "ramp", time = ["0 s", "0.4 s"], value = ["0 rpm", "3000 rpm"] }
+[[step]]
+name = "run"
+type = "transient"
+duration = "0.6 s"
+start = "rest"
+)";
+  const Journal none = journal_of(documented("", up));
+  EXPECT_LT(none.newton, 2e4);
+  EXPECT_LT(apart(none, journal_of(documented("inertia = \"3e-5 kg.m^2\"\n", up))), 0.06);
 }
 
 TEST(TiltingPads, BadInput) {
