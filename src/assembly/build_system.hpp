@@ -66,6 +66,7 @@ struct TiltingPads {
   std::vector<std::vector<Index>>
       unknowns;               ///< scalar nodes of each pad: tilt, pressed if it gives
   std::vector<bool> follows;  ///< an elastic pivot without mass: it follows the film at once
+  std::vector<bool> light;    ///< a tilt without inertia: likewise
   std::function<std::vector<elements::PadStanding>(const NodeAt&)> standing;
   /// The face of a pad as it stands, for pictures.
   struct Face {

@@ -375,6 +375,7 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   for (const auto& p : law.pads()) {
     pads.pivots.push_back(p.pivot);
     pads.follows.push_back(!p.rigid_pivot() && p.mass == 0.0);
+    pads.light.push_back(p.inertia == 0.0);
   }
   pads.unknowns = ring->moving();
   pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };

@@ -215,6 +215,29 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
   return out;
 }
 
+std::string light_pad_without_load(const Job& job, const system::State& s) {
+  system::Workspace w = job.system().make_workspace();
+  job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
+  const auto at = [&w](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  constexpr double little = 0.1;  // of what the pad with the most carries
+  std::string out;
+  double least = little;
+  for (const assembly::TiltingPads& ring : job.built.tilting_pads) {
+    const std::vector<elements::PadStanding> pads = ring.standing(at);
+    double most = 0.0;
+    for (const elements::PadStanding& p : pads)
+      most = std::max(most, p.load);
+    for (std::size_t k = 0; k < pads.size(); ++k) {
+      const double share = most > 0.0 ? pads[k].load / most : 0.0;
+      if (!ring.light[k] || share >= least) continue;
+      least = share;
+      out = fmt::format("pad {} of bearing '{}', which carries {:.3g} N,", k + 1,
+                        job.model.bearings[ring.bearing].name, pads[k].load);
+    }
+  }
+  return out;
+}
+
 namespace {
 
 /// What a support beyond what it is for says; `at`: "at the start of step 'x'".

@@ -31,4 +31,8 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const std::strin
 /// does.
 std::string supports_at_their_limit(const Job& job, const system::State& s);
 
+/// "pad 2 of bearing 'DE', which carries 3 N,": of those that have no inertia and carry little in a state the
+/// one that carries least, against the other pads of its bearing; empty: there is none.
+std::string light_pad_without_load(const Job& job, const system::State& s);
+
 }  // namespace whirl::run

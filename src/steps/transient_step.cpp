@@ -605,8 +605,14 @@ void TransientRun::say_failure(const analysis::TransientResult& r) const {
       : law_.integrator.tolerance < 1e-7
           ? "a tolerance of 1e-7 or more may be above the rounding of this model"
           : "try a smaller tolerance, or look at the state before it in the frames";
+  const std::string pad = run::light_pad_without_load(job_, r.end);
+  const std::string of_pad = pad.empty() ? ""
+                                         : fmt::format(
+                                               "{} has no inertia, so that little says how "
+                                               "it moves: give its bearing inertia; else ",
+                                               pad);
   throw run_error("R10", fmt::format("step '{}' stopped {}{}", step_.name, r.detail, limits),
-                  "results up to that time are complete; " + hint, step_.name);
+                  "results up to that time are complete; " + of_pad + hint, step_.name);
 }
 
 void TransientRun::execute() {

@@ -679,6 +679,18 @@ TEST(TiltingPads, MasslessPadsLoseTheirLoadInMotion) {
   EXPECT_LT(less, 0.7 * some);
 }
 
+// Where no step is possible pads that move as they please are named.
+TEST(TiltingPads, MasslessPadsThatStopAStepAreNamed) {
+  const std::string coarse = orbit + "integrator = { dt_min = \"0.001 ms\" }\n";
+  const DeckRun d(documented("", coarse));
+  EXPECT_NE(d.exit, 0);
+  EXPECT_TRUE(d.says("error[R10]") && d.says("of bearing 'DE', which carries") &&
+              d.says("give its bearing inertia"))
+      << d.log;
+  const DeckRun heavy(documented("inertia = \"1.2e-4 kg.m^2\"", coarse));
+  EXPECT_FALSE(heavy.says("give its bearing inertia")) << heavy.log;
+}
+
 // At rest no film says where a pad stands; the rotor falls into its bearings and is run up.
 TEST(TiltingPads, MasslessPadsStartFromStandstill) {
   const std::string up = R"([[drive]]
