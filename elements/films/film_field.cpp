@@ -46,8 +46,8 @@ class PadInState {
                                : flow(theta, f.viscosity[i],
                                       share_driven(static_cast<std::size_t>(wet)) * f.slope[i]));
     }
+    add_wetted(f, offset);
     fill_dry(f);
-    if (conserves()) add_wetted(f, offset);
     return f;
   }
 
@@ -107,7 +107,7 @@ class PadInState {
   }
 
  private:
-  /// Of the width, what ruptured film at this place wets of the oil that is carried to it.
+  /// Of the width, what oil that is carried to this place wets where film has ruptured, or has not formed.
   double share_wet(double offset) const {
     const bool forward = slip_ > 0.0;
     double from = forward ? 0.0 : arc_.length;  // where the gap was full last
@@ -164,27 +164,11 @@ class PadInState {
     const double along = re > 0.0 ? TurbulentFactors<double>(re).along : 1.0;
     return film_.length * (0.5 * R * slip_ * h - h * h * h * slope / (12.0 * eta * along * R));
   }
-  /// Where there is no film the flow of the stretch upstream, or of the next one where none is.
+  /// Where there is no film the flow is what was dragged through the gap where it was full last.
   void fill_dry(FilmField& f) const {
-    const std::size_t n = f.theta.size();
-    const bool forward = slip_ >= 0.0;
-    const auto place = [&](std::size_t k) { return forward ? k : n - 1 - k; };
-    double now = films_.empty() ? dragged_through_thinnest() : nan;
-    if (conserves()) {
-      for (std::size_t k = 0; k < n; ++k)
-        if (!f.wet[k])
-          f.flow[k] = 0.5 * film_.length * film_.radius * slip_ * gap_.pad * content_[k];
-      return;
-    }
-    if (!films_.empty()) {
-      const PadProfile::Stretch& first = forward ? films_.front() : films_.back();
-      now = dragged(forward ? first.from : first.to);
-    }
-    for (std::size_t k = 0; k < n; ++k)
-      if (f.wet[place(k)])
-        now = f.flow[place(k)];
-      else
-        f.flow[place(k)] = now;
+    for (std::size_t k = 0; k < f.theta.size(); ++k)
+      if (!f.wet[k])
+        f.flow[k] = 0.5 * film_.length * film_.radius * slip_ * f.thickness[k] * f.share[k];
   }
 
   const FiniteJournal& film_;

@@ -4,8 +4,8 @@
 // Flow through a section of the pad, relative to the housing, in the sense of theta:
 //   Q = L (R s h/2 - h^3 P'/(12 eta f_x R)),   P axial mean
 // What enters a stretch of film and does not leave at its other end leaves at the sides. Where the
-// film has ruptured the flow is that of the rupture; where none has formed yet, that of the place
-// where it does, or, of a film that conserves mass, that of the groove.
+// film has ruptured the flow is that of the rupture; where none has formed yet, that of the groove. Films
+// of Reynolds take in what they lack where they form; the inflow of a pad counts it.
 #pragma once
 #include <elements/films/finite_journal.hpp>
 #include <vector>
@@ -22,14 +22,15 @@ struct FilmField {
   std::vector<double> slope;      ///< dP/dtheta, Pa/rad
   std::vector<double> viscosity;  ///< eta, Pa s
   std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it
+                             ///< (on a grid without mass conserved, of the next one at the start)
   std::vector<unsigned char> wet;  ///< film, not ruptured
   /// Of a film on a grid, for its heat: flow with ruptured gaps filled, m3/s; what is turned into heat
   /// from the start of the pad to here, W; the length that is no relief track times h, over the
   /// length, m, and likewise of 1/h, 1/m. Of a film that conserves mass the flow as it is, and of the
   /// length what oil wets. Empty: one profile along the axis.
   std::vector<double> filled, lost, gap, conducting;
-  /// Of a profile that conserves mass: the share of the width that oil wets, and its integral from the
-  /// start of the pad to here, rad. Empty: all of it.
+  /// Of a profile: the share of the width that oil wets, and its integral from the start of the pad to
+  /// here, rad. Empty on a grid.
   std::vector<double> share, wetted;
 };
 

@@ -49,8 +49,8 @@ class Band {
 };
 
 /// What a temperature in the film or the pad depends on: the loss, the journal, the oil that
-/// enters, the oil about the pad.
-enum Cause : Index { of_loss, of_journal, of_inlet, of_surroundings, causes };
+/// enters, what is behind the pad, oil that films take in at the sides.
+enum Cause : Index { of_loss, of_journal, of_inlet, of_surroundings, of_sides, causes };
 using Affine = Vector<causes>;
 
 /// Thickness of a pad for what goes through it, m.
@@ -74,6 +74,8 @@ class PadHeat {
         edge_(J_ + 1),
         x_(MatX::Zero(N_ * (M_ + J_), causes)) {
     if (!forward_) turn_round();
+    if (on_grid() && !film_.mass_conserving) empty_gaps();
+    if (!on_grid()) place_fronts();
     // finer at the walls, where oil conducts badly
     for (Index j = 0; j <= J_; ++j)
       edge_[j] = 0.5 * (1.0 - std::cos(pi * static_cast<double>(j) / static_cast<double>(J_)));
@@ -81,13 +83,19 @@ class PadHeat {
     Band a(x_.rows(), M_ + J_);
     add_film(a);
     // where films begin and end between faces, these see it by the step
-    if (conserves()) turn_into_heat(film_loss(film_, pad.pad, pad.point));
+    if (!on_grid() && film_.mass_conserving) turn_into_heat(film_loss(film_, pad.pad, pad.point));
     if (M_ > 0) add_wall(a);
     a.solve(x_);
   }
 
-  double inflow() const { return std::max(0.0, field_.flow.front()); }
-  double outflow() const { return std::max(0.0, field_.flow.back()); }
+  /// Heat capacity of what the groove gives and of what leaves at the end, W/K.
+  double inflow() const {
+    return carried_.row(0).cwiseMax(0.0).sum() - side_.head(groove_cells_).cwiseMin(0.0).sum();
+  }
+  double outflow() const { return std::max(0.0, carried_.row(N_).sum()); }
+  /// And of what films that form behind the first one take in at the sides.
+  double taken_in() const { return -side_.tail(N_ - groove_cells_).cwiseMin(0.0).sum(); }
+  double loss() const { return heat_ + gaps_; }
   /// Of the oil that leaves at the end of the pad.
   Affine outlet() const {
     Affine sum = Affine::Zero();
@@ -108,6 +116,13 @@ class PadHeat {
     }
     return sum;
   }
+  /// Heat into the pad, W.
+  Affine into_pad() const {
+    Affine sum = Affine::Zero();
+    for (Index i = 0; M_ > 0 && i < N_; ++i)
+      sum += conducted_[i] * (cell(i, 0) - x_.row(wall_place(i, M_ - 1)).transpose());
+    return sum;
+  }
   PadTemperatures temperatures(const Affine& of) const;
 
  private:
@@ -126,17 +141,16 @@ class PadHeat {
         value = -value;
   }
   bool on_grid() const { return !field_.lost.empty(); }
-  bool conserves() const { return !field_.share.empty(); }
   /// At face i: film thickness; of recesses the mean over the length.
   double face_gap(Index i) const { return on_grid() ? field_.gap[at(i)] : field_.thickness[at(i)]; }
   double h(Index i) const { return 0.5 * (face_gap(i) + face_gap(i + 1)); }
   /// At face i: thickness times the share of the width through which oil flows.
   double flow_gap(Index i) const {
-    return conserves() ? face_gap(i) * field_.share[at(i)] : face_gap(i);
+    return on_grid() ? face_gap(i) : face_gap(i) * field_.share[at(i)];
   }
   /// Share of the width that oil wets, of a cell.
   double wet(Index i) const {
-    if (!conserves()) return 1.0;
+    if (on_grid()) return 1.0;
     return std::abs((field_.wetted[at(i + 1)] - field_.wetted[at(i)]) /
                     (field_.theta[at(i + 1)] - field_.theta[at(i)]));
   }
@@ -146,14 +160,10 @@ class PadHeat {
     return 0.5 * (field_.conducting[at(i)] + field_.conducting[at(i + 1)]);
   }
   /// h^2 P'/(2 eta f R) at a face, m/s: what the pressure drives back in the middle of the film, over
-  /// 1/4; on a grid, and where mass is conserved, with which the flow is right.
+  /// 1/4, with which the flow is right.
   double pushed_back(Index i) const {
-    const double H = face_gap(i);
-    if (on_grid()) return 3.0 * speed_ - 6.0 * field_.filled[at(i)] / (film_.length * H);
-    if (conserves()) return 3.0 * speed_ - 6.0 * field_.flow[at(i)] / (film_.length * flow_gap(i));
-    const double viscosity = field_.viscosity[at(i)];
-    return H * H * field_.slope[at(i)] /
-           (2.0 * viscosity * factors(H, viscosity).along * film_.radius);
+    const double flow = on_grid() ? field_.filled[at(i)] : field_.flow[at(i)];
+    return 3.0 * speed_ - 6.0 * flow / (film_.length * flow_gap(i));
   }
   double eta(Index i) const {
     return 0.5 * (field_.viscosity[at(i)] + field_.viscosity[at(i + 1)]);
@@ -171,6 +181,16 @@ class PadHeat {
   }
   void add_film(Band& a);
   void add_flows(Band& a);
+  /// Of what passes a side, in layer j: driven out by the pressure, or taken in to be dragged along.
+  double share_beside(Index i, Index j) const {
+    const auto below = [&](double z) { return side_[i] > 0.0 ? z * z * (3.0 - 2.0 * z) : z * z; };
+    return below(edge_[j + 1]) - below(edge_[j]);
+  }
+  void empty_gaps();
+  void place_fronts();
+  void find_groove_cells();
+  /// Of what a film takes in where it forms: that of the first one comes from the groove.
+  Cause taken_from(Index i) const { return i < groove_cells_ ? of_inlet : of_sides; }
   void add_loss(Index i);
   void turn_into_heat(double loss) {
     x_.col(of_loss) *= loss / heat_;
@@ -204,7 +224,10 @@ class PadHeat {
   MatX x_;                  ///< right sides, then temperatures: a column a cause
   MatX carried_;            ///< rho c times the flow through face i in layer j, W/K
   VecX journal_, to_face_;  ///< conductance to the journal and to the pad, one a cell, W/K
-  VecX side_;               ///< rho c times what leaves at the sides, one a cell, W/K
+  VecX conducted_;  ///< conductance from the film's first layer into the pad, one a cell, W/K
+  VecX side_;       ///< rho c times what leaves at the sides, one a cell, W/K
+  Index groove_cells_ = 0;  ///< to where the first film has formed
+  double gaps_ = 0;         ///< loss in gaps between streams that count as full in the drag, W
   double heat_ = 0;
 };
 
@@ -223,6 +246,48 @@ void PadHeat::add_film(Band& a) {
   }
 }
 
+/// Films of Reynolds on a grid: what flows is the oil of the films, and of ruptured gaps the share that
+/// it fills is wetted. The drag counts them as full.
+void PadHeat::empty_gaps() {
+  const std::size_t n = field_.flow.size();
+  std::vector<double> share(n, 1.0);
+  bool before = true;  // of the first film
+  for (std::size_t i = 0; i < n; ++i) {
+    before = before && !field_.wet[i];
+    const double flow = before ? field_.filled.front() : field_.flow[i];
+    if (!(field_.filled[i] > 0.0 && flow < field_.filled[i])) continue;
+    share[i] = std::max(flow, 0.0) / field_.filled[i];
+    field_.filled[i] *= share[i];
+    field_.gap[i] *= share[i];
+    field_.conducting[i] *= share[i];
+  }
+  double left = 0.0, last = field_.lost[0];
+  for (std::size_t i = 1; i < n; ++i) {
+    const double here = field_.lost[i], wetted = 0.5 * (share[i - 1] + share[i]) * (here - last);
+    gaps_ += std::abs(here - last - wetted);
+    last = here;
+    left += wetted;
+    field_.lost[i] = field_.lost[0] + left;
+  }
+}
+
+/// What a film takes in where it forms comes into its cell and the next, by how near it is to either.
+void PadHeat::place_fronts() {
+  for (Index i = 0; i + 1 < N_; ++i) {
+    if (field_.wet[at(i)] || !field_.wet[at(i + 1)] || !(field_.share[at(i)] < 1.0)) continue;
+    const double dry = std::min(1.0, (1.0 - wet(i)) / (1.0 - field_.share[at(i)]));
+    double& flow = field_.flow[at(i + 1)];
+    const double carried = std::lerp(flow, std::min(flow, field_.flow[at(i)]), dry);
+    field_.share[at(i + 1)] = carried / flow;
+    flow = carried;
+  }
+}
+
+void PadHeat::find_groove_cells() {
+  const auto wet = std::find(field_.wet.begin(), field_.wet.end(), 1);
+  groove_cells_ = std::min<Index>(N_, wet - field_.wet.begin() + 1);
+}
+
 void PadHeat::add_flows(Band& a) {
   const double capacity = s_.density * s_.specific_heat * film_.length;
   carried_.resize(N_ + 1, J_);
@@ -234,15 +299,16 @@ void PadHeat::add_flows(Band& a) {
     for (Index j = 0; j < J_; ++j)
       carried_(i, j) = capacity * H * (below(edge_[j + 1]) - below(edge_[j]));
   }
+  find_groove_cells();
   side_.resize(N_);
   for (Index i = 0; i < N_; ++i) {
     side_[i] = carried_.row(i).sum() - carried_.row(i + 1).sum();
     double up = 0.0;
     for (Index j = 0; j < J_; ++j) {
       const Index p = place(i, j);
-      const auto share = [&](double z) { return z * z * (3.0 - 2.0 * z); };
-      const double side = side_[i] * (share(edge_[j + 1]) - share(edge_[j]));
-      a(p, p) += side;
+      const double side = side_[i] * share_beside(i, j);
+      a(p, p) += std::max(side, 0.0);
+      x_(p, taken_from(i)) -= std::min(side, 0.0);
       up += carried_(i, j) - carried_(i + 1, j) - side;
       if (j + 1 < J_) carry(a, p, place(i, j + 1), up);
       if (i + 1 < N_) carry(a, p, place(i + 1, j), carried_(i + 1, j));
@@ -281,11 +347,14 @@ void PadHeat::add_loss(Index i) {
   for (Index j = 0; j < J_; ++j)
     x_(place(i, j), of_loss) += loss[j];
   heat_ += loss.sum();
+  if (!on_grid() && !film_.mass_conserving)
+    gaps_ += unit * speed_ * speed_ * f.shear * (1.0 - wet(i));
 }
 
 void PadHeat::add_wall(Band& a) {
   const double t = wall_ / static_cast<double>(M_), L = film_.length, k = s_.wall_conductivity;
   const double across = k * L * dx_ / t, along = k * L * t / dx_;
+  conducted_.resize(N_);
   const auto lose = [&](Index p, double area, double half) {
     const double by = 1.0 / (1.0 / (s_.back_coefficient * area) + half);
     a(p, p) += by;
@@ -298,7 +367,8 @@ void PadHeat::add_wall(Band& a) {
       if (i == 0 || i + 1 == N_) lose(wall_place(i, m), L * t, 0.5 / along);
     }
     lose(wall_place(i, 0), L * dx_, 0.5 / across);
-    conduct(a, wall_place(i, M_ - 1), place(i, 0), 1.0 / (1.0 / to_face_[i] + 0.5 / across));
+    conducted_[i] = 1.0 / (1.0 / to_face_[i] + 0.5 / across);
+    conduct(a, wall_place(i, M_ - 1), place(i, 0), conducted_[i]);
   }
 }
 
@@ -308,11 +378,13 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
   out.in = of[of_inlet];
   out.out = outlet().dot(of);
   out.to_journal = into_journal().dot(of);
-  out.heat = heat_;
+  out.to_pad = into_pad().dot(of);
+  out.heat = loss();
   out.film_coldest = infinity;
   out.hottest = out.film_hottest = -infinity;
   const double across =
       M_ > 0 ? s_.wall_conductivity * film_.length * dx_ * static_cast<double>(M_) / wall_ : 0.0;
+  out.carried = gaps_;
   double mean = 0.0, lean = 0.0;
   for (Index i = 0; i < N_; ++i) {
     double film = 0.0, fluidity = 0.0;
@@ -326,7 +398,6 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
     double face = T[place(i, 0)];
     if (M_ > 0) {
       const double g = to_face_[i], wall = T[wall_place(i, M_ - 1)];
-      out.to_pad += (face - wall) / (1.0 / g + 0.5 / across);
       face = (g * face + 2.0 * across * wall) / (g + 2.0 * across);
     }
     const double theta = 0.5 * (field_.theta[at(i)] + field_.theta[at(i + 1)]);
@@ -345,8 +416,8 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
       lean += share * T[wall_place(i, m)] * place_m;
     }
     for (Index j = 0; j < J_; ++j) {
-      const auto share = [&](double z) { return z * z * (3.0 - 2.0 * z); };
-      out.carried += side_[i] * (share(edge_[j + 1]) - share(edge_[j])) * T[place(i, j)];
+      out.carried +=
+          side_[i] * share_beside(i, j) * (side_[i] > 0.0 ? T[place(i, j)] : of[taken_from(i)]);
     }
   }
   for (Index j = 0; j < J_; ++j) {
@@ -399,7 +470,8 @@ void find_growth(HeatBalance& b, std::span<const HeatPad> pads, const HeatSettin
     inlet += t.in / static_cast<double>(b.pads.size());
   }
   const double from = s.assembly_temperature;
-  const double housing = std::isnan(s.housing_temperature) ? inlet : s.housing_temperature;
+  const double about = std::isnan(s.supply_flow) ? inlet : b.bath;
+  const double housing = std::isnan(s.housing_temperature) ? about : s.housing_temperature;
   for (std::size_t k = 0; k < pads.size(); ++k) {
     const double R = pads[k].film->radius, clearance = pads[k].film->surface->clearance();
     const double shaft = R * s.shaft_expansion * (b.journal - from);
@@ -417,56 +489,203 @@ void find_growth(HeatBalance& b, std::span<const HeatPad> pads, const HeatSettin
   }
 }
 
-HeatBalance balance_on_grid(std::span<const HeatPad> pads, const HeatSettings& s) {
-  HeatBalance out;
-  out.journal = s.supply_temperature;
-  if (pads[0].point.slip == 0.0) {
-    for (const HeatPad& p : pads)
-      out.pads.push_back(at_rest(p, s));
-    find_growth(out, pads, s);
-    return out;
+/// What enters a pad.
+struct Groove {
+  double hot = 0, fresh = 0, bath = 0;  ///< shares: T_in of T_out of the pad before, T_s, T_b
+  double passed = 0;                    ///< rho c times oil of the film before, W/K
+};
+
+class BearingHeat {
+ public:
+  BearingHeat(std::span<const HeatPad> pads, const HeatSettings& s)
+      : s_(s),
+        own_housing_(!std::isnan(s.housing_temperature)),
+        given_(!std::isnan(s.supply_flow)),
+        fed_(s.density * s.specific_heat * s.supply_flow) {
+    heat_.reserve(pads.size());
+    for (const std::size_t k : downstream(pads))
+      heat_.emplace_back(pads[k], s);
+    for (std::size_t k = 0; k < heat_.size(); ++k)
+      grooves_.push_back(groove(k));
   }
-  const std::vector<std::size_t> order = downstream(pads);
-  const std::size_t n = pads.size();
-  std::vector<PadHeat> heat;
-  heat.reserve(n);
-  for (const std::size_t k : order)
-    heat.emplace_back(pads[k], s);
-  // unknown: what enters each pad, and the journal
-  const Index size = static_cast<Index>(n) + 1, journal = size - 1;
-  MatX A = MatX::Zero(size, size);
-  VecX b = VecX::Zero(size);
-  const bool own_housing = !std::isnan(s.housing_temperature);
-  const auto add = [&](Index row, double factor, const Affine& x, Index pad) {
-    b[row] -= factor * x[of_loss];
-    A(row, journal) += factor * x[of_journal];
-    A(row, pad) += factor * x[of_inlet];
-    if (own_housing)
-      b[row] -= factor * x[of_surroundings] * s.housing_temperature;
-    else
-      A(row, pad) += factor * x[of_surroundings];
+  /// Pads in that order.
+  HeatBalance solve();
+
+ private:
+  /// A temperature: an unknown, or known.
+  struct Source {
+    Index unknown = -1;
+    double known = 0;
   };
+  std::size_t before(std::size_t k) const { return (k + heat_.size() - 1) % heat_.size(); }
+  Index journal() const { return static_cast<Index>(heat_.size()); }
+  Index bath() const { return journal() + 1; }
+  Source beside(Index pad) const {
+    if (given_) return {bath(), 0.0};
+    return s_.flooded ? Source{pad, 0.0} : Source{-1, s_.supply_temperature};
+  }
+  Source behind(Index pad) const {
+    if (own_housing_) return {-1, s_.housing_temperature};
+    return {given_ ? bath() : pad, 0.0};
+  }
+  Groove groove(std::size_t k) const;
+  void add(Index row, double factor, const Affine& x, std::size_t pad);
+  void add_bath();
+  void add_flows(HeatBalance& b) const;
+
+  const HeatSettings& s_;
+  bool own_housing_, given_;
+  double fed_;  ///< rho c times the supply, W/K
+  std::vector<PadHeat> heat_;
+  std::vector<Groove> grooves_;
+  MatX A_;  ///< of what enters each pad, the journal and, where it is predicted, the bath
+  VecX b_;
+};
+
+Groove BearingHeat::groove(std::size_t k) const {
+  const double in = heat_[k].inflow(), out = heat_[before(k)].outflow();
+  const auto part = [in](double flow) { return flow < in ? flow / in : 1.0; };
+  Groove g;
+  if (s_.flooded && given_) {
+    g.hot = part(s_.carry_over * out);
+    g.bath = 1.0 - g.hot;
+  } else if (s_.flooded) {
+    g.hot = s_.carry_over;
+    g.fresh = 1.0 - g.hot;
+  } else {
+    g.hot = std::min(s_.carry_over, part(out));
+    g.fresh = 1.0 - g.hot;
+    if (given_) g.fresh = std::min(g.fresh, part(fed_ / static_cast<double>(heat_.size())));
+    g.bath = 1.0 - g.hot - g.fresh;
+  }
+  g.passed = std::min(g.hot * in, out);
+  return g;
+}
+
+void BearingHeat::add(Index row, double factor, const Affine& x, std::size_t pad) {
+  const Index own = static_cast<Index>(pad);
+  b_[row] -= factor * x[of_loss];
+  A_(row, journal()) += factor * x[of_journal];
+  A_(row, own) += factor * x[of_inlet];
+  const auto from = [&](double by, const Source& source) {
+    if (source.unknown >= 0)
+      A_(row, source.unknown) += factor * by;
+    else
+      b_[row] -= factor * by * source.known;
+  };
+  from(x[of_sides], beside(own));
+  from(x[of_surroundings], behind(own));
+}
+
+/// Energy of all that is within the housing.
+void BearingHeat::add_bath() {
+  const Index row = bath();
+  A_(row, row) += 1.0;
+  b_[row] += s_.supply_temperature;
+  for (std::size_t k = 0; k < heat_.size(); ++k) {
+    b_[row] += heat_[k].loss() / fed_;
+    if (own_housing_) add(row, 1.0 / fed_, heat_[k].into_pad(), k);
+  }
+}
+
+HeatBalance BearingHeat::solve() {
+  const std::size_t n = heat_.size();
+  const Index size = journal() + (given_ ? 2 : 1);
+  A_ = MatX::Zero(size, size);
+  b_ = VecX::Zero(size);
   for (std::size_t k = 0; k < n; ++k) {
     const Index row = static_cast<Index>(k);
-    const std::size_t before = (k + n - 1) % n;
-    A(row, row) += 1.0;
-    b[row] += (1.0 - s.carry_over) * s.supply_temperature;
-    add(row, -s.carry_over, heat[before].outlet(), static_cast<Index>(before));
-    add(journal, 1.0, heat[k].into_journal(), row);
+    const Groove& g = grooves_[k];
+    A_(row, row) += 1.0;
+    b_[row] += g.fresh * s_.supply_temperature;
+    if (given_) A_(row, bath()) -= g.bath;
+    add(row, -g.hot, heat_[before(k)].outlet(), before(k));
+    add(journal(), 1.0, heat_[k].into_journal(), k);
   }
-  const VecX T = la::DenseLu<double>(A).solve(b);
-  out.journal = T[journal];
-  out.pads.resize(n);
+  if (given_) add_bath();
+  const VecX T = la::DenseLu<double>(A_).solve(b_);
+  const auto value = [&](const Source& x) { return x.unknown >= 0 ? T[x.unknown] : x.known; };
+  HeatBalance out;
+  out.journal = T[journal()];
+  if (given_) out.bath = T[bath()];
   for (std::size_t k = 0; k < n; ++k) {
+    const Index own = static_cast<Index>(k);
     Affine of;
     of[of_loss] = 1.0;
-    of[of_journal] = T[journal];
-    of[of_inlet] = T[static_cast<Index>(k)];
-    of[of_surroundings] = own_housing ? s.housing_temperature : of[of_inlet];
-    out.pads[order[k]] = heat[k].temperatures(of);
+    of[of_journal] = out.journal;
+    of[of_inlet] = T[own];
+    of[of_surroundings] = value(behind(own));
+    of[of_sides] = value(beside(own));
+    out.pads.push_back(heat_[k].temperatures(of));
+    const double warm_sides = heat_[k].taken_in() * (of[of_sides] - s_.supply_temperature);
+    out.pads[k].returned = warm_sides;
+    out.pads[k].to_oil = out.pads[k].carried + warm_sides;
+  }
+  add_flows(out);
+  return out;
+}
+
+/// What passes from pad to pad, and what does not.
+void BearingHeat::add_flows(HeatBalance& b) const {
+  double leaves = 0.0, warm = 0.0, returned = 0.0;
+  for (std::size_t k = 0; k < heat_.size(); ++k) {
+    PadTemperatures &pad = b.pads[k], &from = b.pads[before(k)];
+    const double in = heat_[k].inflow(), entered = in * (pad.in - s_.supply_temperature),
+                 passed = grooves_[k].passed * (from.out - s_.supply_temperature);
+    pad.hot_share = in > 0.0 ? grooves_[k].passed / in : 0.0;
+    if (s_.flooded || given_) pad.returned += entered - passed;
+    pad.to_oil += entered;
+    from.to_oil -= passed;
+    pad.beyond = in + heat_[k].taken_in() - grooves_[k].passed;
+    if ((s_.flooded || given_) && pad.beyond > 1e-9 * in)
+      pad.beyond_at = s_.supply_temperature + pad.returned / pad.beyond;
+    leaves += pad.beyond;
+    returned += pad.returned;
+  }
+  if (!s_.flooded && !given_) return;
+  for (const PadTemperatures& t : b.pads)
+    warm += t.to_oil;
+  b.mixed = s_.supply_temperature + warm / leaves;
+  if (!given_) b.bath = s_.supply_temperature + returned / leaves;
+}
+
+HeatBalance balance_at_rest(std::span<const HeatPad> pads, const HeatSettings& s) {
+  HeatBalance out;
+  out.journal = s.supply_temperature;
+  for (const HeatPad& p : pads)
+    out.pads.push_back(at_rest(p, s));
+  if (s.flooded || !std::isnan(s.supply_flow)) out.bath = out.mixed = s.supply_temperature;
+  return out;
+}
+
+HeatBalance balance_on_grid(std::span<const HeatPad> pads, const HeatSettings& s) {
+  HeatBalance out;
+  if (pads[0].point.slip == 0.0) {
+    out = balance_at_rest(pads, s);
+  } else {
+    HeatBalance along = BearingHeat(pads, s).solve();
+    const std::vector<std::size_t> order = downstream(pads);
+    out = along;
+    for (std::size_t k = 0; k < order.size(); ++k)
+      out.pads[order[k]] = std::move(along.pads[k]);
   }
   find_growth(out, pads, s);
   return out;
+}
+
+/// That given, or what the bath stands for.
+void find_supply_flow(HeatBalance& b, const HeatSettings& s) {
+  b.supply_flow = s.supply_flow;
+  if (!std::isnan(s.supply_flow) || !s.flooded) return;
+  constexpr double least = 0.01;  // less is what the cells leave of side flows
+  double heat = 0.0, returned = 0.0;
+  for (const PadTemperatures& t : b.pads) {
+    heat += t.heat - (std::isnan(s.housing_temperature) ? 0.0 : t.to_pad);
+    returned += t.returned;
+  }
+  const double warmer = b.bath - s.supply_temperature;
+  if (heat > 0.0 && returned > least * heat)
+    b.supply_flow = heat / (s.density * s.specific_heat * warmer);
 }
 
 /// fine + share (fine - coarse) of what stands at cells, those of `coarse` twice as wide.
@@ -486,7 +705,9 @@ void extrapolate(PadTemperatures& fine, const PadTemperatures& coarse, double sh
        {&PadTemperatures::in, &PadTemperatures::out, &PadTemperatures::hottest,
         &PadTemperatures::film_hottest, &PadTemperatures::film_coldest, &PadTemperatures::pad,
         &PadTemperatures::through, &PadTemperatures::to_pad, &PadTemperatures::to_journal,
-        &PadTemperatures::heat, &PadTemperatures::carried})
+        &PadTemperatures::heat, &PadTemperatures::carried, &PadTemperatures::to_oil,
+        &PadTemperatures::returned, &PadTemperatures::hot_share, &PadTemperatures::beyond,
+        &PadTemperatures::beyond_at})
     fine.*x += share * (fine.*x - coarse.*x);
   extrapolate(fine.face, coarse.face, share);
   extrapolate(fine.film, coarse.film, share);
@@ -508,7 +729,8 @@ void extrapolate(HeatBalance& fine, const HeatBalance& coarse, double share) {
     fine.growth[k] += share * (fine.growth[k] - coarse.growth[k]);
     fine.pad_growth[k] += share * (fine.pad_growth[k] - coarse.pad_growth[k]);
   }
-  fine.journal += share * (fine.journal - coarse.journal);
+  for (double HeatBalance::*x : {&HeatBalance::journal, &HeatBalance::bath, &HeatBalance::mixed})
+    fine.*x += share * (fine.*x - coarse.*x);
 }
 
 /// Temperatures so far apart on two grids say nothing of a third.
@@ -524,7 +746,7 @@ bool resolved(const HeatBalance& fine, const HeatBalance& coarse, double supply)
 }
 
 HeatSettings halved(HeatSettings s) {
-  for (std::size_t* n : {&s.cells, &s.layers, &s.wall_layers}) {
+  for (std::size_t* n : {&s.cells, &s.wall_layers}) {
     WHIRL_EXPECTS(*n % 2 == 0);
     *n /= 2;
   }
@@ -541,8 +763,9 @@ HeatSettings finer_settings(const HeatSettings& s) {
   return fine;
 }
 
-HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
-  WHIRL_EXPECTS(!pads.empty() && s.grids >= 1);
+namespace {
+
+HeatBalance extrapolated_balance(std::span<const HeatPad> pads, const HeatSettings& s) {
   std::vector<HeatBalance> found;
   HeatSettings grid = s;
   for (std::size_t k = 0; k < s.grids; ++k) {
@@ -556,6 +779,15 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
     for (std::size_t k = 0; k + order < s.grids; ++k)
       extrapolate(found[k], found[k + 1], share);
   return std::move(found.front());
+}
+
+}  // namespace
+
+HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
+  WHIRL_EXPECTS(!pads.empty() && s.grids >= 1 && !(s.supply_flow <= 0.0));
+  HeatBalance out = extrapolated_balance(pads, s);
+  find_supply_flow(out, s);
+  return out;
 }
 
 void keep_heat(const HeatBalance& b, std::size_t k, const HeatPad& pad, std::span<double> values) {

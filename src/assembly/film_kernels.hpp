@@ -31,7 +31,9 @@ double viscosity_at(const model::Oil& o, double temperature);
 /// the nearer of these.
 double temperature_of(const model::Oil& o, double viscosity);
 /// @pre flow.heat.
-elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil);
+/// tilting: pads in a housing, which may be flooded.
+elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil,
+                                     bool tilting);
 
 /// Force of the theory of short bearings over that of one of finite length, both plain and in steady
 /// rotation. It depends on L/D and the eccentricity alone: viscosity and speed are factors of either

@@ -34,7 +34,8 @@ double temperature_of(const model::Oil& o, double viscosity) {
   return elements::root_between(coldest_grade, hottest_grade, 1.0, thinner);
 }
 
-elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil) {
+elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil,
+                                     bool tilting) {
   WHIRL_EXPECTS(flow.heat.has_value());
   const model::FilmHeat& h = *flow.heat;
   elements::HeatSettings s;
@@ -43,6 +44,8 @@ elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::O
   s.conductivity = h.conductivity;
   s.supply_temperature = h.supply_temperature;
   s.carry_over = h.carry_over;
+  s.flooded = tilting && h.feed == model::FilmHeat::Feed::flooded;
+  if (tilting) s.supply_flow = h.supply_flow;
   s.wall = h.wall;
   s.wall_conductivity = h.wall_conductivity;
   s.back_coefficient = h.back_coefficient;
@@ -76,6 +79,18 @@ NodeAt nodes_in(const system::Workspace& w) {
   return [&w](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
 }
 
+/// With what its oil is fed, for messages; empty: not known.
+std::string supply_of(const elements::HeatSettings& s) {
+  if (std::isnan(s.supply_flow)) return {};
+  return fmt::format(" with a supply flow of {}", units::display(s.supply_flow, "L/min"));
+}
+
+std::string bath_of(const elements::HeatBalance& b, const elements::HeatSettings& s) {
+  if (std::isnan(s.supply_flow)) return {};
+  return fmt::format(":{} the oil about the pads has {}", supply_of(s),
+                     units::display(b.bath, "degC"));
+}
+
 /// What cannot be although it is in balance.
 void check_balance(const elements::HeatBalance& b, const elements::HeatSettings& s,
                    const std::vector<elements::HeatPad>& pads, const std::string& name) {
@@ -86,8 +101,9 @@ void check_balance(const elements::HeatBalance& b, const elements::HeatSettings&
       throw run_error(
           "E85",
           fmt::format("{}: the film of pad {} reaches {}, beyond -30 to 200 degC, where the "
-                      "viscosity of oils is known",
-                      name, k + 1, units::display(hot ? t.film_hottest : t.film_coldest, "degC")),
+                      "viscosity of oils is known{}",
+                      name, k + 1, units::display(hot ? t.film_hottest : t.film_coldest, "degC"),
+                      bath_of(b, s)),
           hot ? "more or cooler oil, a larger clearance, a thinner oil, a lower speed"
               : "warmer oil");
     }
@@ -142,7 +158,8 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
     return out;
   };
   if (film.heated) {
-    const elements::HeatSettings settings = heat_settings(flow, oil);
+    const elements::HeatSettings settings =
+        heat_settings(flow, oil, std::holds_alternative<model::TiltingPadJournal>(b.law));
     film.heat = [pads_at, settings](const NodeAt& at) {
       return elements::balance_heat(pads_at(at), settings);
     };
@@ -165,7 +182,7 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
     for (std::size_t i = 0; i < at_first.size(); ++i)
       if (i % each >= elements::FiniteJournal::kept_growths) at_first[i] = fresh;
     system::Keeper keeper;
-    keeper.name = name_of(b);
+    keeper.name = name_of(b) + supply_of(settings);
     keeper.time_constant = flow.heat->time_constant;
     keeper.settle = [pads_at, settings](const system::Workspace& w, std::span<double> values) {
       const std::vector<elements::HeatPad> now = pads_at(nodes_in(w));

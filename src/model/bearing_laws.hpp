@@ -85,11 +85,14 @@ struct FilmHeat {
   double specific_heat = 1950, conductivity = 0.14;  ///< of the oil, J/(kg K), W/(m K)
   enum class Feed { flooded, leading_edge } feed = Feed::flooded;
   double carry_over = 0.75;  ///< hot oil, from the pad before, in what enters a pad
+  /// Of tilting pads, fresh oil to the bearing, m3/s; NaN: what the temperatures of carry_over stand for.
+  double supply_flow = nan;
   /// Of the pads, m; 0: nothing goes through them. NaN, of tilting pads: as thick as each is.
   double wall = 0;
-  double wall_conductivity = 50;     ///< W/(m K)
-  double back_coefficient = 100;     ///< from the back and the ends of a pad to the oil, W/(m2 K)
-  double housing_temperature = nan;  ///< and of that oil, K; NaN: that of the supply
+  double wall_conductivity = 50;  ///< W/(m K)
+  double back_coefficient = 100;  ///< from the back and the ends of a pad to the oil, W/(m2 K)
+  /// And of that oil, K; NaN: of the oil about the pads with supply_flow, else of what enters each pad.
+  double housing_temperature = nan;
   double shaft_expansion = 0, pad_expansion = 0, housing_expansion = 0;  ///< 1/K
   double assembly_temperature = 293.15;  ///< at which the clearances are those given, K
   double time_constant = infinity;       ///< of all temperatures in time, s; infinite: they stay

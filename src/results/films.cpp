@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace whirl::results {
 namespace {
@@ -34,7 +33,8 @@ double error_of(const std::vector<double>& of_pads, std::size_t k) {
 void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
   const elements::FilmStanding& s = c.films->pads[k];
   double in = nan, out = nan, face = nan, face_at = nan, film = nan, pad = nan, journal = nan,
-         growth = nan, to_pad = nan, to_journal = nan;
+         growth = nan, to_pad = nan, to_journal = nan, to_oil = nan, hot = nan, returned = nan,
+         bath = nan;
   if (c.films->heat) {
     const elements::PadTemperatures& h = c.films->heat->pads[k];
     in = h.in - zero_celsius;
@@ -47,6 +47,10 @@ void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
     growth = c.films->heat->growth[k] * c.films->clearances[k];
     to_pad = h.to_pad;
     to_journal = h.to_journal;
+    to_oil = h.to_oil;
+    hot = h.hot_share;
+    returned = h.returned;
+    bath = h.beyond_at - zero_celsius;
   }
   t.add({c.name,
          to_rpm(c.spin),
@@ -75,7 +79,12 @@ void add_pad_row(io::Table& t, const SupportCoefficients& c, std::size_t k) {
          to_journal,
          nan,
          error_of(c.films->pressure_error, k),
-         error_of(c.films->flow_error, k)});
+         error_of(c.films->flow_error, k),
+         to_oil,
+         hot,
+         returned,
+         bath,
+         nan});
 }
 
 void add_sum_row(io::Table& t, const SupportCoefficients& c) {
@@ -101,11 +110,14 @@ void add_sum_row(io::Table& t, const SupportCoefficients& c) {
       pressure_error = error_of(c.films->pressure_error, k);
     }
   }
-  double face = nan, face_at = nan, film = nan, journal = nan, to_pad = nan, to_journal = nan;
+  double face = nan, face_at = nan, film = nan, journal = nan, to_pad = nan, to_journal = nan,
+         to_oil = nan, returned = nan, bath = nan, supply = nan;
   if (c.films->heat) {
+    bath = c.films->heat->bath - zero_celsius;
+    supply = c.films->heat->supply_flow;
     journal = c.films->heat->journal - zero_celsius;
     face = film = -infinity;
-    to_pad = to_journal = 0.0;
+    to_pad = to_journal = to_oil = returned = 0.0;
     for (const elements::PadTemperatures& h : c.films->heat->pads) {
       if (h.hottest - zero_celsius > face) {
         face = h.hottest - zero_celsius;
@@ -114,6 +126,8 @@ void add_sum_row(io::Table& t, const SupportCoefficients& c) {
       film = std::max(film, h.film_hottest - zero_celsius);
       to_pad += h.to_pad;
       to_journal += h.to_journal;
+      to_oil += h.to_oil;
+      returned += h.returned;
     }
   }
   t.add({c.name,
@@ -143,7 +157,12 @@ void add_sum_row(io::Table& t, const SupportCoefficients& c) {
          to_journal,
          c.films->face_error,
          pressure_error,
-         sum.side_flow > 0.0 ? flow_error / sum.side_flow : nan});
+         sum.side_flow > 0.0 ? flow_error / sum.side_flow : nan,
+         to_oil,
+         nan,
+         returned,
+         bath,
+         supply});
 }
 
 /// A curve along all pads, broken between them.
@@ -259,34 +278,42 @@ io::Table film_table(std::span<const SupportCoefficients> list) {
       "of the whole bearing there is no such number, its film has no heat balance, or it is solved "
       "along the axis";
   t.nan_is_absence = true;
-  t.columns = {{"bearing", "-", ""},
-               {"speed", "rpm", ""},
-               {"pad", "-", "0: all of the bearing"},
-               {"film load", "N", "on the pad"},
-               {"power loss", "W", "in its film"},
-               {"inflow", "m^3/s", "through the leading edge"},
-               {"outflow", "m^3/s", "through the trailing edge, and by a relief track"},
-               {"side flow", "m^3/s", "at both sides"},
-               {"smallest film", "m", ""},
-               {"angle of smallest film", "deg", "from +y towards +z"},
-               {"largest pressure", "Pa", "above ambient"},
-               {"angle of largest pressure", "deg", ""},
-               {"Reynolds number", "-", "largest rho R |s| h/eta"},
-               {"effective viscosity", "Pa s", "mean along the pad"},
-               {"effective temperature", "degC", "of oil with that viscosity, all pads"},
-               {"oil in", "degC", "at the leading edge"},
-               {"oil out", "degC", "at the trailing edge"},
-               {"hottest face", "degC", "of the pad"},
-               {"angle of hottest face", "deg", ""},
-               {"hottest oil", "degC", "anywhere in the film"},
-               {"pad", "degC", "mean of the pad"},
-               {"journal", "degC", ""},
-               {"growth of clearance", "m", "as assembled, by the temperatures"},
-               {"heat into pad", "W", ""},
-               {"heat into journal", "W", "from this film; in sum none"},
-               {"error of hottest face", "K", "by the grid of the heat balance, any pad"},
-               {"axial error of pressure", "-", "of the largest; a film solved along the axis too"},
-               {"axial error of side flow", "-", "likewise"}};
+  t.columns = {
+      {"bearing", "-", ""},
+      {"speed", "rpm", ""},
+      {"pad", "-", "0: all of the bearing"},
+      {"film load", "N", "on the pad"},
+      {"power loss", "W", "in its film"},
+      {"inflow", "m^3/s", "through the leading edge"},
+      {"outflow", "m^3/s", "through the trailing edge, and by a relief track"},
+      {"side flow", "m^3/s", "at both sides"},
+      {"smallest film", "m", ""},
+      {"angle of smallest film", "deg", "from +y towards +z"},
+      {"largest pressure", "Pa", "above ambient"},
+      {"angle of largest pressure", "deg", ""},
+      {"Reynolds number", "-", "largest rho R |s| h/eta"},
+      {"effective viscosity", "Pa s", "mean along the pad"},
+      {"effective temperature", "degC", "of oil with that viscosity, all pads"},
+      {"oil in", "degC", "at the leading edge"},
+      {"oil out", "degC", "at the trailing edge"},
+      {"hottest face", "degC", "of the pad"},
+      {"angle of hottest face", "deg", ""},
+      {"hottest oil", "degC", "anywhere in the film"},
+      {"pad", "degC", "mean of the pad"},
+      {"journal", "degC", ""},
+      {"growth of clearance", "m", "as assembled, by the temperatures"},
+      {"heat into pad", "W", ""},
+      {"heat into journal", "W", "from this film; in sum none"},
+      {"error of hottest face", "K", "by the grid of the heat balance, any pad"},
+      {"axial error of pressure", "-", "of the largest; a film solved along the axis too"},
+      {"axial error of side flow", "-", "likewise"},
+      {"heat into oil", "W",
+       "that leaves the film with it, over oil as fed; with pads the loss and what is returned"},
+      {"hot oil in inflow", "-", "from the pad before, of what enters"},
+      {"heat returned", "W",
+       "by the oil about the pads, in what enters beyond that of the pad before"},
+      {"oil about the pads", "degC", "what enters beyond that of the pad before; all pads: mixed"},
+      {"supply flow", "m^3/s", "with which the oil about the pads is as warm; or that given"}};
   for (const SupportCoefficients& c : list) {
     if (!c.films) continue;
     for (std::size_t k = 0; k < c.films->pads.size(); ++k)
@@ -390,88 +417,93 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
 
 namespace {
 
-/// The heat balance of a bearing's films, and their oil; null: it has none.
-struct Heated {
-  const model::FilmHeat* heat = nullptr;
-  const model::Oil* oil = nullptr;
-};
-Heated heated(const model::Bearing& b) {
-  const auto of = [](const auto& law) {
-    return law.flow.heat ? Heated{&*law.flow.heat, &law.oil} : Heated{};
-  };
-  if (const auto* journal = std::get_if<model::FiniteJournal>(&b.law)) return of(*journal);
-  const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
-  return pads ? of(*pads) : Heated{};
+/// The heat of its films; null: they have none.
+const model::FilmHeat* heat_of(const model::Bearing& b) {
+  const model::FilmFlow* flow = nullptr;
+  if (const auto* journal = std::get_if<model::FiniteJournal>(&b.law)) flow = &journal->flow;
+  if (const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law)) flow = &pads->flow;
+  return flow && flow->heat ? &*flow->heat : nullptr;
 }
 
 /// Whether its temperatures go with the motion, late as they should be.
 bool follows(const model::Bearing& b, bool linear) {
-  const model::FilmHeat* heat = heated(b).heat;
+  const model::FilmHeat* heat = heat_of(b);
   return !linear && heat && std::isfinite(heat->time_constant);
 }
 
-/// Heat that grooves make, W: hot oil that enters a pad though the one before lets out less.
-struct GrooveHeat {
-  double made = 0, loss = 0;
-  std::vector<std::size_t> pads;  ///< behind such grooves, from 1
-  double share() const { return loss > 0 ? made / loss : 0.0; }
-};
-
-GrooveHeat heat_of_grooves(const SupportCoefficients& c, const Heated& of) {
-  constexpr double counts = 0.01;  // of the loss, of one groove
-  const FilmResults& films = *c.films;
-  const std::vector<elements::PadTemperatures>& at = films.heat->pads;
-  const std::size_t n = films.pads.size();
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return at[a].theta.front() < at[b].theta.front();
-  });
-  if (c.spin < 0) std::reverse(order.begin(), order.end());
-  GrooveHeat out;
-  for (const elements::FilmStanding& s : films.pads)
-    out.loss += s.power;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = order[i], before = order[(i + n - 1) % n];
-    const double missing = of.heat->carry_over * films.pads[k].inflow - films.pads[before].outflow;
-    const double made = of.oil->density * of.heat->specific_heat * missing *
-                        (at[before].out - of.heat->supply_temperature);
-    if (!(made > counts * out.loss)) continue;
-    out.made += made;
-    out.pads.push_back(k + 1);
+/// Which pads take in less hot oil than carry_over, as those before them give no more; empty: none.
+std::string line_of_limits(const elements::HeatBalance& heat, double carry_over) {
+  std::string pads;
+  for (std::size_t k = 0; k < heat.pads.size(); ++k) {
+    const double share = heat.pads[k].hot_share;
+    if (heat.pads[k].heat > 0.0 && share < carry_over * (1 - 1e-6))
+      pads += fmt::format("{}pad {}: {:.3g}", pads.empty() ? "" : ", ", k + 1, share);
   }
-  std::sort(out.pads.begin(), out.pads.end());
-  return out;
+  if (pads.empty()) return {};
+  return fmt::format(
+      "less hot oil than carry_over = {:.3g} of what enters ({}): the pad before gives no more",
+      carry_over, pads);
+}
+
+/// How warm the oil about the pads is, and why; empty: at rest, or nothing enters from there.
+std::string line_of_bath(const elements::HeatBalance& heat) {
+  double returned = 0.0;
+  for (const elements::PadTemperatures& t : heat.pads)
+    returned += t.returned;
+  if (std::isnan(heat.supply_flow) || !(returned > 0.0)) return {};
+  return fmt::format(
+      "the oil about the pads has {:.4g} degC and returns {:.4g} W to them, with {:.4g} L/min of "
+      "fresh oil",
+      heat.bath - zero_celsius, returned, 6e4 * heat.supply_flow);
 }
 
 }  // namespace
 
-void warn_of_hot_grooves(run::Job& job, const std::string& step,
-                         std::span<const SupportCoefficients> list) {
+std::vector<std::string> groove_lines(const run::Job& job,
+                                      std::span<const SupportCoefficients> list) {
+  std::vector<std::string> out;
+  for (const SupportCoefficients& c : list) {
+    if (!c.films || !c.films->heat) continue;
+    const auto named = std::find_if(job.model.bearings.begin(), job.model.bearings.end(),
+                                    [&](const model::Bearing& b) { return b.name == c.name; });
+    if (named == job.model.bearings.end() || !heat_of(*named)) continue;
+    const std::string line = std::isnan(c.films->heat->bath)
+                                 ? line_of_limits(*c.films->heat, heat_of(*named)->carry_over)
+                                 : line_of_bath(*c.films->heat);
+    if (!line.empty())
+      out.push_back(fmt::format("bearing '{}' at {:.6g} rpm: {}", c.name, to_rpm(c.spin), line));
+  }
+  return out;
+}
+
+void warn_of_hot_bath(run::Job& job, const std::string& step,
+                      std::span<const SupportCoefficients> list) {
   for (const model::Bearing& b : job.model.bearings) {
-    const Heated of = heated(b);
-    if (!of.heat) continue;
-    GrooveHeat worst;
-    double spin = 0.0;
+    if (!heat_of(b) || !std::isnan(heat_of(b)->supply_flow)) continue;
+    const SupportCoefficients* worst = nullptr;
+    std::size_t pad = 0;
+    double most = 0.01;  // K: less is the rounding of a bath that is as warm
     for (const SupportCoefficients& c : list) {
-      if (c.name != b.name || !c.films || !c.films->heat || c.spin == 0.0) continue;
-      GrooveHeat here = heat_of_grooves(c, of);
-      if (!(here.share() > worst.share())) continue;
-      worst = std::move(here);
-      spin = c.spin;
+      if (c.name != b.name || !c.films || !c.films->heat) continue;
+      const elements::HeatBalance& heat = *c.films->heat;
+      for (std::size_t k = 0; k < heat.pads.size(); ++k) {
+        if (!(heat.pads[k].beyond_at - heat.mixed > most)) continue;
+        most = heat.pads[k].beyond_at - heat.mixed;
+        worst = &c;
+        pad = k;
+      }
     }
-    if (worst.pads.empty()) continue;
+    if (!worst) continue;
+    const elements::HeatBalance& heat = *worst->films->heat;
     Diagnostic d;
     d.code = "W03";
     d.message = fmt::format(
-        "step '{}': bearing '{}' at {:.6g} rpm: with carry_over = {:.4g} the grooves before "
-        "pad{} {} take in more hot oil than the pads before them let out, which makes {:.4g} W "
-        "beside a loss of {:.4g} W: the temperatures lean on that",
-        step, b.name, to_rpm(spin), of.heat->carry_over, worst.pads.size() == 1 ? "" : "s",
-        fmt::join(worst.pads, ", "), worst.made, worst.loss);
-    d.hint =
-        "the balance closes with a carry_over of no more than the flow out of the pad before over "
-        "that into the next (table of films)";
+        "step '{}': bearing '{}' at {:.6g} rpm: with carry_over = {:.4g} the oil about the pads "
+        "that enters pad {} would have {:.4g} degC, and what leaves the films has {:.4g} in the "
+        "mean: no bath of that oil is as warm",
+        step, b.name, to_rpm(worst->spin), heat_of(b)->carry_over, pad + 1,
+        heat.pads[pad].beyond_at - zero_celsius, heat.mixed - zero_celsius);
+    d.hint = "a lower carry_over, or supply_flow, which predicts how warm that oil is";
     d.where = b.where;
     warn(job, std::move(d));
   }

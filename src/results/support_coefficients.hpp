@@ -140,10 +140,14 @@ std::optional<plot::Figure> draw_film_trends(const std::string& name,
 /// warning W03.
 void warn_of_turbulence(run::Job& job, const std::string& step,
                         std::span<const SupportCoefficients> list);
-/// Heat balances in which grooves make heat, hot oil entering a pad that has not left the one before; the worst
-/// state of each bearing: warning W03.
-void warn_of_hot_grooves(run::Job& job, const std::string& step,
-                         std::span<const SupportCoefficients> list);
+/// A line for each bearing with heat: of flooded pads how warm the oil about them is, and for which supply that
+/// stands; of fed grooves those that take in less hot oil than carry_over, as the pads before give no more.
+std::vector<std::string> groove_lines(const run::Job& job,
+                                      std::span<const SupportCoefficients> list);
+/// Flooded pads that would have to be fed with oil hotter than all that leaves their films, in the mean; the
+/// worst state of each bearing: warning W03.
+void warn_of_hot_bath(run::Job& job, const std::string& step,
+                      std::span<const SupportCoefficients> list);
 /// What a motion in time left as it began: of each film with heat the viscosity that its balance in
 /// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
 /// apart: warning W03.

@@ -394,7 +394,7 @@ void SpeedSweep::show_bearings() {
     if (auto trend = results::draw_film_trends(s_.file("film_trends"), rows_))
       s_.add_figure(std::move(*trend));
     results::warn_of_turbulence(job_, step_.name, rows_);
-    results::warn_of_hot_grooves(job_, step_.name, rows_);
+    results::warn_of_hot_bath(job_, step_.name, rows_);
   }
   show_rings();
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);

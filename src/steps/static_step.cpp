@@ -282,7 +282,11 @@ void StaticRun::write_tables() {
   for (plot::Figure& f : results::draw_films(step_.name + "_films", linear))
     results_.figures.push_back(std::move(f));
   results::warn_of_turbulence(job_, step_.name, linear);
-  results::warn_of_hot_grooves(job_, step_.name, linear);
+  results::warn_of_hot_bath(job_, step_.name, linear);
+  for (std::string& line : results::groove_lines(job_, linear)) {
+    summary()["grooves"].push(line);
+    results_.lines.push_back(std::move(line));
+  }
   rings_ = results::ring_tables(linear);
   for (std::string& starved : results::starved_rings(linear)) {
     summary()["starved rings"].push(starved);

@@ -100,22 +100,27 @@ Films films_of(const std::string& bearing, std::size_t pads, double load = 10e3)
 
 }  // namespace
 
-// Hottest pad: measured 76.5 degC (read from a figure, +-1), the authors' TEHD 72.9.
+// M. Fillon, J.-C. Bligoud, J. Frene, J. Tribol. 114 (1992) 579, 10 kN at 4000 rpm. Hottest pad: measured 76.5
+// degC (read from a figure, +-1), the authors' TEHD 72.9.
 TEST(HotFilms, FillonFourPads) {
   const Films f = films_of(four_pads + heat(), 4);
   EXPECT_NEAR(f.hottest(), 72.9, 4.0);
   EXPECT_NEAR(f.hottest(), 76.5, 8.0);
-  EXPECT_NEAR(f.hottest(), 74.32, 0.1);
+  EXPECT_NEAR(f.hottest(), 74.03, 0.1);
   ASSERT_EQ(f.films.rows.size(), 10u);
-  double power = 0, side = 0, to_journal = 0, to_pad = 0, thinnest = 1, hottest_oil = 0;
+  double power = 0, side = 0, to_journal = 0, to_pad = 0, to_oil = 0, returned = 0, thinnest = 1,
+         hottest_oil = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(f.pad(k, "pad [-]"), static_cast<double>(k + 1));
     EXPECT_NEAR(f.pad(k, "speed [rpm]"), 4000, 1e-6);
     EXPECT_GT(f.pad(k, "oil out [degC]"), f.pad(k, "oil in [degC]"));
     const std::size_t before = (k + 3) % 4;
-    // a quarter of fresh oil
     EXPECT_NEAR(f.pad(k, "oil in [degC]"), 0.75 * f.pad(before, "oil out [degC]") + 0.25 * 40,
                 1e-6);
+    const double share = f.pad(before, "outflow [m^3/s]") / f.pad(k, "inflow [m^3/s]");
+    EXPECT_NEAR(f.pad(k, "hot oil in inflow [-]"), std::min(0.75, share), 5e-3);
+    to_oil += f.pad(k, "heat into oil [W]");
+    returned += f.pad(k, "heat returned [W]");
     EXPECT_LE(f.pad(k, "pad [degC]"), f.pad(k, "hottest face [degC]"));
     EXPECT_GE(f.pad(k, "hottest oil [degC]"), f.pad(k, "hottest face [degC]") - 1e-9);
     EXPECT_NEAR(f.pad(k, "inflow [m^3/s]") - f.pad(k, "outflow [m^3/s]"),
@@ -143,6 +148,9 @@ TEST(HotFilms, FillonFourPads) {
   EXPECT_NEAR(to_journal, 0.0, 0.05);
   EXPECT_NEAR(f.all("heat into journal [W]"), to_journal, 0.05);
   EXPECT_NEAR(f.all("heat into pad [W]"), to_pad, 1e-6 * to_pad);
+  EXPECT_NEAR(f.all("heat into oil [W]"), to_oil, 1e-6 * to_oil);
+  EXPECT_NEAR(f.all("heat returned [W]"), returned, 1e-6 * returned);
+  EXPECT_NEAR(to_oil + to_pad, power + returned, 1e-3 * power);
   EXPECT_EQ(f.all("smallest film [m]"), thinnest);
   EXPECT_EQ(f.all("hottest oil [degC]"), hottest_oil);
   EXPECT_GT(f.all("journal [degC]"), 50.0);
@@ -152,32 +160,171 @@ TEST(HotFilms, FillonFourPads) {
     EXPECT_NEAR(f.all(angle), 270, 90);
 }
 
-// carry_over is a share of what enters a pad: where the pad before lets out less than that, the groove between
-// them makes heat. The flows and temperatures of the table say how much.
-TEST(HotFilms, GroovesThatMakeHeatAreSaid) {
-  const DeckRun d(rotor(four_pads + heat()));
-  ASSERT_EQ(d.exit, 0) << d.log;
-  const Films f(d, 4);
-  const double loss = f.pad(4, "power loss [W]");
-  double made = 0;
-  std::string pads;
+namespace {
+
+constexpr double capacity = 860 * 1951.8;  // J/(m3 K), of the oil of four_pads
+
+/// Of four pads: heat that enters with what the pad before does not let out, over oil as fed, W, and how much
+/// enters there, m3/s; by the flows and temperatures of the table, `share` of hot oil wanted in what enters.
+struct FromBath {
+  double heat = 0, flow = 0;
+};
+FromBath from_bath(const Films& f, double share) {
+  FromBath out;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t before = (k + 3) % 4;
-    const double missing = 0.75 * f.pad(k, "inflow [m^3/s]") - f.pad(before, "outflow [m^3/s]");
-    const double heat_there = 860.0 * 1951.8 * missing * (f.pad(before, "oil out [degC]") - 40.0);
-    if (heat_there < 0.01 * loss) continue;
-    made += heat_there;
-    pads += (pads.empty() ? "" : ", ") + std::to_string(k + 1);
+    const double in = f.pad(k, "inflow [m^3/s]"),
+                 hot = std::min(share * in, f.pad(before, "outflow [m^3/s]"));
+    out.heat += capacity * (in * (f.pad(k, "oil in [degC]") - 40) -
+                            hot * (f.pad(before, "oil out [degC]") - 40));
+    out.flow += in - hot;
   }
-  EXPECT_GT(made, loss);
-  EXPECT_TRUE(d.says(fmt::format("the grooves before pads {} take in more hot oil", pads)))
-      << d.log;
-  EXPECT_TRUE(d.says(fmt::format("makes {:.4g} W beside a loss of {:.4g} W", made, loss)))
-      << made << " W\n"
-      << d.log;
-  const DeckRun little(rotor(four_pads + heat(", carry_over = 0.2")));
-  ASSERT_EQ(little.exit, 0) << little.log;
-  EXPECT_FALSE(little.says("more hot oil")) << little.log;
+  return out;
+}
+double loss_of(const Films& f) { return f.all("power loss [W]"); }
+/// What leaves the films and pads is what is lost in them and what comes back.
+void expect_closed(const Films& f) {
+  EXPECT_NEAR(f.all("heat into oil [W]") + f.all("heat into pad [W]"),
+              loss_of(f) + f.all("heat returned [W]"), 1e-3 * loss_of(f));
+}
+
+}  // namespace
+
+// Flooded pads are fed with warm oil from about them: how warm it is, and with how much fresh oil it would be.
+TEST(HotFilms, TheBathOfFloodedPads) {
+  const DeckRun d(rotor(four_pads + heat()));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("no bath of that oil")) << d.log;
+  const Films f(d, 4);
+  expect_closed(f);
+  const FromBath back = from_bath(f, 0.75);
+  EXPECT_GT(back.heat, loss_of(f));
+  EXPECT_NEAR(f.all("heat returned [W]"), back.heat, 0.01 * back.heat);
+  const double bath = f.all("oil about the pads [degC]");
+  EXPECT_NEAR(bath - 40, back.heat / (capacity * back.flow), 0.01 * (bath - 40));
+  EXPECT_NEAR(capacity * f.all("supply flow [m^3/s]") * (bath - 40), loss_of(f), 1e-3 * loss_of(f));
+  EXPECT_TRUE(d.says(fmt::format("the oil about the pads has {:.4g} degC", bath))) << d.log;
+  // little of the hot oil: the pads before give it, and the rest is fresh
+  const Films little = films_of(four_pads + heat(", carry_over = 0.2"), 4);
+  EXPECT_NEAR(little.all("heat returned [W]"), 0, 2e-3 * loss_of(little));
+  EXPECT_NEAR(little.all("oil about the pads [degC]"), 40, 0.02);
+  EXPECT_TRUE(std::isnan(little.all("supply flow [m^3/s]")));
+  expect_closed(little);
+  // oil as hot as that about the pads could not be, were it mixed of what leaves the films
+  const DeckRun hot(rotor(four_pads + heat(", carry_over = 0.95")));
+  ASSERT_EQ(hot.exit, 0) << hot.log;
+  EXPECT_TRUE(hot.says("W03") && hot.says("that enters pad 3 would have") &&
+              hot.says("no bath of that oil is as warm"))
+      << hot.log;
+}
+
+// With a supply flow the bath has what the whole bearing loses; pads take all of what those before let out, and
+// the rest from there.
+TEST(HotFilms, SupplyFlowPredictsTheBath) {
+  double last = 200;
+  for (const double flow : {1.0, 3.0, 5.0, 20.0}) {
+    SCOPED_TRACE(flow);
+    const Films f =
+        films_of(four_pads + heat(fmt::format(", supply_flow = \"{} L/min\"", flow)), 4);
+    const double bath = 40 + loss_of(f) / (capacity * flow / 6e4);
+    EXPECT_NEAR(f.all("oil about the pads [degC]"), bath, 1e-3 * (bath - 40));
+    EXPECT_NEAR(f.all("supply flow [m^3/s]"), flow / 6e4, 1e-12);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t before = (k + 3) % 4;
+      const double hot =
+          std::min(1.0, f.pad(before, "outflow [m^3/s]") / f.pad(k, "inflow [m^3/s]"));
+      // of what enters, some of which runs back where the film of little and hot oil is steep
+      EXPECT_NEAR(f.pad(k, "hot oil in inflow [-]"), hot, 0.02);
+      EXPECT_NEAR(f.pad(k, "oil in [degC]"),
+                  hot * f.pad(before, "oil out [degC]") + (1 - hot) * bath,
+                  5e-3 * (f.pad(before, "oil out [degC]") - 40));
+    }
+    expect_closed(f);
+    EXPECT_LT(f.hottest(), last - 0.5);
+    last = f.hottest();
+  }
+  // what pads conduct to a housing that is kept cold does not warm the bath
+  const Films cold =
+      films_of(four_pads + heat(", supply_flow = \"3 L/min\", housing_temperature = "
+                                "\"20 degC\", back_coefficient = \"1000 W/(m^2.K)\""),
+               4);
+  EXPECT_NEAR(capacity * 3 / 6e4 * (cold.all("oil about the pads [degC]") - 40),
+              loss_of(cold) - cold.all("heat into pad [W]"), 1e-3 * loss_of(cold));
+  EXPECT_GT(cold.all("heat into pad [W]"), 0.05 * loss_of(cold));
+  expect_closed(cold);
+  // less of the hot oil enters the next pad
+  const auto with = [](const std::string& more) {
+    return films_of(four_pads + heat(", supply_flow = \"5 L/min\"" + more), 4);
+  };
+  const Films half = with(", carry_over = 0.5");
+  EXPECT_NEAR(half.pad(2, "hot oil in inflow [-]"),
+              0.5 * half.pad(1, "outflow [m^3/s]") / half.pad(2, "inflow [m^3/s]"), 3e-3);
+  EXPECT_LT(half.hottest(), with("").hottest() - 0.2);
+}
+
+// Leading-edge grooves get the fresh oil first, what lacks is of the bath; enough of it is fresh oil alone.
+TEST(HotFilms, SupplyFlowOfLeadingEdges) {
+  const auto with = [](const std::string& more) {
+    return films_of(four_pads + heat(", feed = \"leading_edge\"" + more), 4);
+  };
+  const Films alone = with(""), much = with(", supply_flow = \"40 L/min\""),
+              little = with(", supply_flow = \"4 L/min\"");
+  EXPECT_EQ(alone.all("heat returned [W]"), 0.0);
+  EXPECT_TRUE(std::isnan(alone.all("oil about the pads [degC]")));
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(much.pad(k, "oil in [degC]"), alone.pad(k, "oil in [degC]"), 0.05);
+  EXPECT_GT(little.hottest(), alone.hottest() + 0.5);
+  const double bath = 40 + loss_of(little) / (capacity * 4 / 6e4);
+  EXPECT_NEAR(little.all("oil about the pads [degC]"), bath, 1e-3 * (bath - 40));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t before = (k + 3) % 4;
+    const double in = little.pad(k, "inflow [m^3/s]");
+    const double hot = std::min(0.3, little.pad(before, "outflow [m^3/s]") / in),
+                 fresh = std::min(1 - hot, 1 / 6e4 / in);
+    EXPECT_NEAR(little.pad(k, "oil in [degC]"),
+                hot * little.pad(before, "oil out [degC]") + fresh * 40 + (1 - hot - fresh) * bath,
+                0.05);
+  }
+  expect_closed(little);
+  expect_closed(alone);
+}
+
+// What cannot be, or cannot be found, says for which bearing, and with which flow.
+TEST(HotFilms, TooLittleSupply) {
+  for (const char* flow : {"0.01 L/min", "0.001 L/min"}) {
+    const DeckRun d(rotor(four_pads + heat(fmt::format(", supply_flow = \"{}\"", flow))));
+    EXPECT_NE(d.exit, 0) << flow;
+    EXPECT_TRUE(d.says("bearing 'DE'") || d.says("bearing 'NDE'")) << d.log;
+    EXPECT_TRUE(d.says(fmt::format("with a supply flow of {}", flow))) << d.log;
+  }
+  const DeckRun journal(rotor(grooved + "iso_vg = 32\nheat = { supply_temperature = \"45 degC\", "
+                                        "supply_flow = \"3 L/min\" }\n",
+                              4e3));
+  EXPECT_NE(journal.exit, 0);
+  EXPECT_TRUE(journal.says("supply_flow")) << journal.log;
+}
+
+// A groove that is fed takes in no more hot oil than the pad before lets out, and steps say where that acts.
+TEST(HotFilms, NoMoreHotOilThanThereIs) {
+  const auto edges = [](const char* more) {
+    return DeckRun(rotor(four_pads + heat(fmt::format(", feed = \"leading_edge\"{}", more))));
+  };
+  const DeckRun much = edges(", carry_over = 0.75");
+  EXPECT_TRUE(much.says("less hot oil than carry_over = 0.75") && much.says("pad 3: 0.2"))
+      << much.log;
+  const Films f(much, 4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t before = (k + 3) % 4;
+    const double hot = f.pad(k, "hot oil in inflow [-]");
+    EXPECT_NEAR(hot, std::min(0.75, f.pad(before, "outflow [m^3/s]") / f.pad(k, "inflow [m^3/s]")),
+                3e-3);
+    EXPECT_NEAR(f.pad(k, "oil in [degC]"), hot * f.pad(before, "oil out [degC]") + (1 - hot) * 40,
+                5e-3);
+  }
+  expect_closed(f);
+  const DeckRun fresh = edges(", carry_over = 0.2");
+  EXPECT_FALSE(fresh.says("less hot oil")) << fresh.log;
+  EXPECT_NEAR(Films(fresh, 4).pad(2, "hot oil in inflow [-]"), 0.2, 1e-12);
 }
 
 TEST(HotFilms, KeysOfHeatMatter) {
@@ -195,8 +342,10 @@ TEST(HotFilms, KeysOfHeatMatter) {
   EXPECT_GT(std::abs(other("0.149", "0.3") - base), 0.2);
   EXPECT_GT(other("0.0341", "0.02"), base + 1);
   EXPECT_LT(with(", feed = \"leading_edge\""), base - 5);
-  EXPECT_NEAR(with(", feed = \"leading_edge\", carry_over = 0.75"), base, 1e-6);
+  // as much hot oil, where there is as much: no bath feeds such grooves
+  EXPECT_LT(with(", feed = \"leading_edge\", carry_over = 0.75"), base - 5);
   EXPECT_GT(with(", carry_over = 0.8"), base + 1);
+  EXPECT_LT(with(", supply_flow = \"20 L/min\""), base - 1);
   EXPECT_GT(std::abs(with(", wall = \"0 mm\"") - base), 0.2);
   EXPECT_GT(with(", wall_conductivity = \"5 W/(m.K)\""), base + 0.2);
   EXPECT_LT(with(", back_coefficient = \"1000 W/(m^2.K)\""), base - 0.5);
@@ -225,6 +374,10 @@ TEST(HotFilms, FixedSurfacesAndGrades) {
   EXPECT_GT(f.hottest(), 50);
   EXPECT_LT(f.hottest(), 110);
   EXPECT_NEAR(f.all("power loss [W]"), -speed * f.torque, 1e-3 * f.all("power loss [W]"));
+  EXPECT_NEAR(f.all("heat into oil [W]") + f.all("heat into pad [W]"), f.all("power loss [W]"),
+              1e-3 * f.all("power loss [W]"));
+  EXPECT_EQ(f.all("heat returned [W]"), 0.0);
+  EXPECT_TRUE(std::isnan(f.all("supply flow [m^3/s]")));
   const double bush = 0.5 * (f.pad(0, "pad [degC]") + f.pad(1, "pad [degC]"));
   EXPECT_NEAR(f.pad(0, "growth of clearance [m]"), 0.05 * 5e-6 * (bush - 20), 1e-12);
 }
@@ -306,11 +459,11 @@ namespace {
 std::string speeding_up(const std::string& bearing, double duration) {
   const std::string steps = fmt::format(
       "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"5000 rpm\"\n"
-      "[[step]]\nname = \"up\"\ntype = \"transient\"\nduration = \"{} s\"\n"
+      "[[step]]\nname = \"up\"\ntype = \"transient\"\nduration = \"{} s\"\nstart = \"static\"\n"
       "[[drive]]\nat = \"a:start\"\nstep = \"up\"\ntype = \"speed\"\nspeed = {{ type = \"smooth\", "
-      "time = [\"0 s\", \"0.1 s\"], value = [\"4000 rpm\", \"5000 rpm\"] }}\n",
+      "time = [\"0 s\", \"0.15 s\"], value = [\"4000 rpm\", \"5000 rpm\"] }}\n",
       duration);
-  return rotor(bearing, 10e3, steps);
+  return rotor(bearing, 2e3, steps);
 }
 
 }  // namespace

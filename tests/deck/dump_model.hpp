@@ -125,10 +125,11 @@ class ModelDump {
     each("flow", std::array{double(f.regime), f.supply_pressure, double(f.cavitation)});
     if (!f.heat) return;
     const model::FilmHeat& h = *f.heat;
-    each("heat", std::array{h.supply_temperature, h.specific_heat, h.conductivity, double(h.feed),
-                            h.carry_over, h.wall, h.wall_conductivity, h.back_coefficient,
-                            h.housing_temperature, h.shaft_expansion, h.pad_expansion,
-                            h.housing_expansion, h.assembly_temperature, h.time_constant});
+    each("heat",
+         std::array{h.supply_temperature, h.specific_heat, h.conductivity, double(h.feed),
+                    h.carry_over, h.supply_flow, h.wall, h.wall_conductivity, h.back_coefficient,
+                    h.housing_temperature, h.shaft_expansion, h.pad_expansion, h.housing_expansion,
+                    h.assembly_temperature, h.time_constant});
   }
   void law(const model::ShortJournal& x) {
     each("short", std::array{x.diameter, x.length, x.clearance});

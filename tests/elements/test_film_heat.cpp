@@ -55,6 +55,7 @@ TEST(FilmHeat, AdiabaticCouetteFlow) {
     // T_in - T_s = s (T_out - T_s)
     EXPECT_NEAR(t.in - s.supply_temperature, 0.5 * (t.out - s.supply_temperature), 1e-9);
     EXPECT_NEAR(t.in - s.supply_temperature, rise, 1e-9 * rise);
+    EXPECT_EQ(t.hot_share, 0.5);  // as much arrives as enters
   }
 }
 
@@ -296,6 +297,128 @@ TEST(FilmHeat, AGridThatConservesMassIsAsWarm) {
     EXPECT_NEAR(grid.pads[k].out, profile.pads[k].out, 0.015 * rise);
     EXPECT_NEAR(grid.pads[k].heat, profile.pads[k].heat, 0.01 * profile.pads[k].heat);
   }
+}
+
+namespace {
+
+/// Of a bearing with two pads, pad 0 before pad 1 and that before pad 0 again: a groove passes on no more
+/// oil and heat than it gets, by the flows of the films, and all loss leaves with oil or through pads.
+void expect_closed(const FiniteJournal& film, const Vec2& r, const HeatSettings& s, double spin) {
+  const HeatBalance b = balance(film, r, s, spin);
+  double heat = 0, away = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PadTemperatures &t = b.pads[k], &before = b.pads[1 - k];
+    const double in = film_standing(film, k, at(r, spin), 900).inflow,
+                 given = film_standing(film, 1 - k, at(r, spin), 900).outflow;
+    const double warm = before.out - s.supply_temperature;
+    EXPECT_NEAR(t.hot_share, std::min(s.carry_over, given / in), 1e-2);
+    EXPECT_NEAR(t.in - s.supply_temperature, t.hot_share * warm, 5e-3 * warm);
+    EXPECT_LE(in * (t.in - s.supply_temperature), 1.01 * given * warm);
+    EXPECT_GT(t.to_oil, 0.0);
+    heat += t.heat;
+    away += t.to_oil + t.to_pad;
+  }
+  EXPECT_NEAR(away, heat, 1e-6 * heat);
+}
+
+void expect_bath(const FiniteJournal& film, const Vec2& r, const HeatSettings& s, double spin) {
+  const HeatBalance b = balance(film, r, s, spin);
+  const double unit = s.density * s.specific_heat;
+  const bool given = !std::isnan(s.supply_flow);
+  double heat = 0, away = 0, returned = 0, taken = 0, to_pad = 0, back = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PadTemperatures &t = b.pads[k], &before = b.pads[1 - k];
+    const double in = film_standing(film, k, at(r, spin), 900).inflow,
+                 out = film_standing(film, 1 - k, at(r, spin), 900).outflow,
+                 hot = std::min(given ? s.carry_over * out : s.carry_over * in, given ? in : out);
+    const double warm = before.out - s.supply_temperature, enters = t.in - s.supply_temperature;
+    const double mixed = hot * warm + (in - hot) * (b.bath - s.supply_temperature);
+    EXPECT_NEAR(in * enters, given ? mixed : in * s.carry_over * warm,
+                (given ? 1e-2 : 1e-9) * in * warm);
+    back += unit * (in * enters - hot * warm);
+    heat += t.heat;
+    away += t.to_oil + t.to_pad;
+    returned += t.returned;
+    to_pad += t.to_pad;
+    taken += t.beyond;
+  }
+  const double own = std::isnan(s.housing_temperature) ? heat : heat - to_pad,
+               bath = b.bath - s.supply_temperature;
+  EXPECT_NEAR(away, heat + returned, 1e-6 * heat);
+  EXPECT_NEAR(returned, back, 0.01 * (heat + returned));
+  EXPECT_NEAR(returned, taken * bath, 1e-2 * heat);
+  if (returned > 0.01 * heat) {
+    EXPECT_NEAR(unit * b.supply_flow * bath, own, 1e-6 * heat);
+    // what leaves the films and pads mixes with the supply, and is taken in again or let off
+    const double backs = std::isnan(s.housing_temperature) ? to_pad : 0.0;
+    EXPECT_NEAR(taken * (b.mixed - s.supply_temperature) + backs,
+                (taken + unit * b.supply_flow) * bath, 2e-2 * heat);
+  }
+}
+
+}  // namespace
+
+TEST(FilmHeat, GroovesMakeNoHeat) {
+  const Vec2 r(0.3 * c, -0.6 * c);
+  for (const FiniteJournal& kind : {split_bearing(), on_grid({{}, {}})})
+    for (const bool conserving : {false, true})
+      for (const double supply : {0.0, 5e4})
+        for (const double spin : {60.0, 400.0, -600.0})
+          for (const double share : {0.2, 0.75, 0.95}) {
+            SCOPED_TRACE(testing::Message() << (kind.grid != nullptr) << conserving << ", "
+                                            << supply << " Pa, " << spin << " rad/s, " << share);
+            FiniteJournal film = kind;
+            film.mass_conserving = conserving;
+            film.supply_pressure = supply;
+            HeatSettings s = settings();
+            s.wall = 0.015;
+            s.carry_over = share;
+            expect_closed(film, r, s, spin);
+          }
+}
+
+// Flooded: temperatures as the share says, and what comes back by the flows of the films; with a supply flow, by
+// the energy of all that is within the housing.
+TEST(FilmHeat, HeatOfTheBath) {
+  const Vec2 r(0.3 * c, -0.6 * c);
+  for (const FiniteJournal& kind : {split_bearing(), on_grid({{}, {}})})
+    for (const double spin : {60.0, 400.0, -600.0})
+      for (const double flow : {whirl::nan, 2e-5, 1e-4})
+        for (const bool housing : {false, true}) {
+          SCOPED_TRACE(testing::Message() << (kind.grid != nullptr) << ", " << spin << " rad/s, "
+                                          << flow << " m3/s " << housing);
+          HeatSettings s = settings();
+          s.wall = 0.015;
+          s.flooded = true;
+          s.supply_flow = flow;
+          s.carry_over = std::isnan(flow) ? 0.75 : 1.0;
+          if (housing) s.housing_temperature = 303.15;
+          expect_bath(kind, r, s, spin);
+        }
+}
+
+// Films of Reynolds form again behind a ruptured stretch: what they lack is fresh oil.
+TEST(FilmHeat, FilmsThatFormAgainTakeInFreshOil) {
+  const std::vector<JournalPad> whole{{0.0, 350 * pi / 180, pi}};
+  const FiniteJournal film{R, L, eta, std::make_shared<JournalSurface>(c, 0.0, whole, 72)};
+  HeatSettings s = settings();
+  s.conductivity = 1e-12;
+  s.cells = 192;
+  const Vec2 r = 0.6 * c * Vec2(std::cos(0.5 * pi), std::sin(0.5 * pi));
+  const std::vector<HeatPad> pads{{&film, 0, at(r)}};
+  const PadTemperatures t = balance_heat(pads, s).pads[0];
+  const FilmField f = sample_film(film, 0, at(r), 193);
+  std::size_t forms = 0;
+  for (std::size_t i = 1; i < 193; ++i)
+    if (f.wet[i] && !f.wet[i - 1]) forms = i;
+  ASSERT_GT(forms, 96u);
+  const double left = f.flow[forms - 2] / f.flow[forms + 1];
+  ASSERT_LT(left, 0.6);
+  const double before = t.film[forms - 3] - s.supply_temperature,
+               behind = t.film[forms + 3] - s.supply_temperature;
+  EXPECT_NEAR(behind, left * before, 0.1 * before);
+  EXPECT_NEAR(t.to_oil, t.heat, 1e-6 * t.heat);
+  EXPECT_NEAR(t.hot_share, std::min(0.75, f.flow.back() / f.flow.front()), 1e-3);
 }
 
 // What the difference of two equilibria says of a hot film is what its linear law says.

@@ -20,6 +20,18 @@ VecX vector_of(const std::vector<double>& x) {
   return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.size()));
 }
 
+/// Whose values are farthest from the balance.
+const system::Keeper& farthest(const system::System& sys, const VecX& residual) {
+  const auto off = [&](const system::Keeper& k) {
+    return residual.segment(static_cast<Index>(k.first), static_cast<Index>(k.count))
+        .cwiseAbs()
+        .maxCoeff();
+  };
+  return *std::max_element(
+      sys.keepers().begin(), sys.keepers().end(),
+      [&](const system::Keeper& a, const system::Keeper& b) { return off(a) < off(b); });
+}
+
 /// The fixed point of x -> g(x) from pairs of x and g(x) - x (D. G. Anderson, J. ACM 12, 1965, doi
 /// 10.1145/321296.321305): of the last few, the combination whose residuals cancel best.
 class FixedPoint {
@@ -81,11 +93,13 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
   system::Workspace w = sys.make_workspace();
   FixedPoint iteration;
   std::vector<double> settled;
+  VecX residual;
   for (int round = 0; round < most; ++round) {
     const system::State& s = out.state;
     sys.evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
     sys.settle_kept(w, settled);
-    const VecX now = vector_of(s.frames.kept), residual = vector_of(settled) - now;
+    const VecX now = vector_of(s.frames.kept);
+    residual = vector_of(settled) - now;
     out.kept_error = residual.cwiseAbs().maxCoeff();
     if (out.kept_error < tolerance) {
       for (const system::Keeper& k : sys.keepers())
@@ -102,10 +116,12 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
       moved = try_solve(Omega, &start);
     }
     if (!moved)
-      throw run_error("E76",
-                      fmt::format("no equilibrium found with the temperatures of {}: {}",
-                                  sys.keepers().front().name, why_),
-                      "a bearing may be beyond its capacity with hot oil: look at it without heat");
+      throw run_error(
+          "E76",
+          fmt::format("no equilibrium found with the temperatures of {}: {}",
+                      farthest(sys, residual).name, why_),
+          "a bearing may be beyond its capacity with hot oil (supply_flow, carry_over): "
+          "look at it without heat");
     moved->iterations += out.iterations;
     moved->drifted = moved->drifted || out.drifted;
     const double error = out.kept_error;
@@ -114,13 +130,15 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
   }
   for (const system::Keeper& k : sys.keepers())
     if (k.check) k.check(w);  // what cannot be says more
-  throw run_error("E76",
-                  fmt::format("the temperatures of {} and the equilibrium do not settle: after {} "
-                              "rounds they still change by {:.2g} (of the logarithm of the "
-                              "viscosity, or of the clearance)",
-                              sys.keepers().front().name, most, out.kept_error),
-                  "the journal may grow into its bearing (expansions, supply_temperature, "
-                  "clearance), or the oil be too little (carry_over): look at it without heat");
+  throw run_error(
+      "E76",
+      fmt::format("the temperatures of {} and the equilibrium do not settle: after {} "
+                  "rounds they still change by {:.2g} (of the logarithm of the "
+                  "viscosity, or of the clearance)",
+                  farthest(sys, residual).name, most, out.kept_error),
+      "the journal may grow into its bearing (expansions, supply_temperature, "
+      "clearance), or the oil be too little (supply_flow, carry_over): look at it without "
+      "heat");
 }
 
 }  // namespace whirl::analysis

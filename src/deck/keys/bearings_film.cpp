@@ -72,12 +72,28 @@ void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting) {
   v.quantity("specific_heat", h.specific_heat, "J/(kg.K)", positive, "of the oil");
   v.quantity("conductivity", h.conductivity, "W/(m.K)", positive, "of the oil");
   v.choice("feed", h.feed,
-           {{"flooded", "the oil of the pad before stays in the groove: carry_over 0.75"},
+           {{"flooded", tilting ? "the pads stand in a bath of oil: carry_over 0.75"
+                                : "the oil of the pad before stays in the groove: carry_over 0.75"},
             {"leading_edge", "fresh oil in a groove of the pad's leading edge: carry_over 0.3"}},
            "how pads are fed");
-  if (h.feed == Feed::leading_edge) h.carry_over = 0.3;
-  v.number(optional("carry_over", "by feed"), h.carry_over, Range{0, 1, false, true},
-           "share of hot oil, from the pad before, in the oil that enters a pad");
+  const bool flows =
+      tilting && v.quantity(optional("supply_flow", "that which carry_over stands for"),
+                            h.supply_flow, "L/min", positive,
+                            "fresh oil to the whole bearing: predicts how warm the oil about the "
+                            "pads is, and that enters where the pad before gives too little");
+  if (h.feed == Feed::leading_edge)
+    h.carry_over = 0.3;
+  else if (flows)
+    h.carry_over = 1.0;
+  v.number(optional("carry_over",
+                    tilting ? "by feed; 1 where flooded pads have supply_flow" : "by feed"),
+           h.carry_over, Range{0, 1, false, true},
+           tilting ? "flooded: how much warmer the oil that enters a pad is than that supplied, "
+                     "over how much warmer it leaves the pad before; or, with supply_flow, the "
+                     "share of that oil which enters. leading_edge: share of oil of the pad "
+                     "before in what enters, where that gives as much"
+                   : "share of hot oil, from the pad before, in the oil that enters a pad, where "
+                     "that pad gives as much");
   if (tilting) h.wall = nan;
   v.quantity(tilting ? optional("wall", "the thickness of the pads") : Key("wall"), h.wall, "mm",
              not_negative,
@@ -85,7 +101,10 @@ void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting) {
   v.quantity("wall_conductivity", h.wall_conductivity, "W/(m.K)", positive, "of the pads");
   v.quantity("back_coefficient", h.back_coefficient, "W/(m^2.K)", not_negative,
              "heat transfer from the back and the ends of the pads");
-  v.quantity(optional("housing_temperature", "that of the oil which enters each pad"),
+  v.quantity(optional("housing_temperature",
+                      tilting ? "that of the oil about the pads with supply_flow, else of that "
+                                "which enters each"
+                              : "that of the oil which enters each pad"),
              h.housing_temperature, "degC", any, "of what is about the pads");
   v.quantity("shaft_expansion", h.shaft_expansion, "1/K", not_negative,
              "thermal expansion of the journal, which closes the clearance");
