@@ -82,16 +82,19 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
   const bool first = u > pi,
              second = u < arc_;  // from the start of the pad; up to its end or ending on it
   int n = 0;
+  const auto add = [&](const Ends& s) {
+    // one of no length carries nothing: loads go with the third power of it, and more
+    constexpr double least = 1e-9;  // of the pad
+    if (s.b - s.a > least * (high - low)) out[static_cast<std::size_t>(n++)] = s;
+  };
   if (first) {
     const bool whole = u - pi >= arc_;
-    out[0] = stretch(low, whole ? high : gamma(u - pi), low, second ? gamma(u) : high, true, whole);
-    n = 1;
+    add(stretch(low, whole ? high : gamma(u - pi), low, second ? gamma(u) : high, true, whole));
   }
   if (second) {
     const bool whole = u + pi >= arc_;
     const double a = u > 0.0 ? gamma(u) : low, b = whole ? high : gamma(u + pi);
-    out[static_cast<std::size_t>(n++)] =
-        stretch(a, b, first ? gamma(u - pi) : low, high, u <= 0.0, whole);
+    add(stretch(a, b, first ? gamma(u - pi) : low, high, u <= 0.0, whole));
   }
   return n;
 }

@@ -25,7 +25,8 @@ bool PadFilm::fill(const Vec2& e, int up, double content, double edge, Ends& s) 
   s.forms = up;
   s.content = content;
   if (core == other) return fed;  // a film at the edge alone
-  if (thickness(first) <= content) return true;
+  constexpr double rounding = 1e-14;
+  if (thickness(first) <= content + rounding) return true;
   const double cosine = (1.0 - content) / e.norm();
   double along = infinity;  // from `first` to where the gap is `content` and gets thinner
   if (std::abs(cosine) < 1.0) {

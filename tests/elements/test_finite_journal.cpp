@@ -448,6 +448,34 @@ TEST(FiniteJournal, ForceIsSmoothUnderRotation) {
   }
 }
 
+// The widest gap just at an end of a pad: a film that begins there has no length.
+TEST(FiniteJournal, FilmsWithoutLength) {
+  const double c = 1e-4, groove = 20 * pi / 180;
+  FiniteJournal film{0.05, 0.06, 0.02,
+                     std::make_shared<JournalSurface>(c, 0.0, two_groove_pads(0.0, groove), 72)};
+  const auto force = [&](double widest, double spin) {
+    LateralMotion m;
+    m.r = -0.6 * c * Vec2(std::cos(widest), std::sin(widest));
+    m.v.setZero();
+    m.spin = spin;
+    FilmForce f;
+    film.evaluate(FilmLaw<FiniteJournal>::point(m), f);
+    return f.F;
+  };
+  for (const double supply : {0.0, 1e5})
+    for (const bool conserving : {false, true})
+      for (const double spin : {400.0, -400.0})
+        for (const JournalSurface::Arc& arc : film.surface->arcs())
+          for (const double end : {arc.start, arc.start + arc.length}) {
+            film.supply_pressure = supply;
+            film.mass_conserving = conserving;
+            const Vec2 near = force(end + 1e-6, spin);
+            for (const double off : {0.0, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7})
+              for (const double to : {end + off, end - off})
+                EXPECT_LT((force(to, spin) - near).norm(), 1e-5 * near.norm()) << end << " " << off;
+          }
+}
+
 TEST(FiniteJournal, FilmIsPassive) {
   Random r(23);
   for (const auto& b :
