@@ -30,6 +30,7 @@ class PadInState {
     const PadProfile profile = pad_.profile(at_.e, at_.W, medium_, offset);
     films_ = profile.films;
     content_ = profile.content;
+    follow_streams();
     const double unit = film_.pressure_unit(gap_);
     FilmField f;
     for (std::size_t i = 0; i < samples; ++i) {
@@ -42,11 +43,10 @@ class PadInState {
       f.viscosity.push_back(viscosity(offset[i]));
       const int wet = film_at(offset[i]);
       f.wet.push_back(wet >= 0 ? 1 : 0);
-      f.flow.push_back(wet < 0 ? 0.0
-                               : flow(theta, f.viscosity[i],
-                                      share_driven(static_cast<std::size_t>(wet)) * f.slope[i]));
+      f.flow.push_back(wet < 0 ? 0.0 : film_flow(static_cast<std::size_t>(wet), f, i));
     }
     add_wetted(f, offset);
+    thin_short_films(f, offset);
     fill_dry(f);
     return f;
   }
@@ -73,7 +73,7 @@ class PadInState {
     std::array<double, 2> out{dragged(s.from), dragged(s.to)};
     if (!s.free_from && !arc_.round) out[0] -= driven * s.out_from;
     if (!s.free_to && !arc_.round) out[1] += driven * s.out_to;
-    if (!conserves()) return out;
+    if (!conserves()) return {taken(i, out[0]), taken(i, out[1])};
     // what the stretch before it, or the groove, lets go
     if (slip_ > 0.0 && s.free_from) out[0] = dragged(i > 0 ? films_[i - 1].to : 0.0);
     if (slip_ < 0.0 && s.free_to)
@@ -107,16 +107,56 @@ class PadInState {
   }
 
  private:
+  bool forward() const { return slip_ > 0.0; }
+  /// The number of the film that the oil meets as the k-th.
+  std::size_t downstream(std::size_t k) const { return forward() ? k : films_.size() - 1 - k; }
+  /// Thicknesses of gap that what comes to each film would fill, and what leaves it.
+  void follow_streams() {
+    double carried = thickness(arc_.start + (forward() ? 0.0 : arc_.length));
+    streams_.resize(films_.size());
+    for (std::size_t k = 0; k < films_.size(); ++k) {
+      const PadProfile::Stretch& s = films_[downstream(k)];
+      const double leaves = thickness(arc_.start + (forward() ? s.to : s.from));
+      const bool forms = forward() ? s.free_from : s.free_to;
+      const double full = forms && !conserves()
+                              ? std::min(1.0, (s.to - s.from) / (PadFilm::short_film * arc_.length))
+                              : 1.0;
+      Stream& own = streams_[downstream(k)];
+      own = {full, carried, carried < leaves ? std::lerp(carried, leaves, full) : leaves};
+      carried = own.leaves;
+    }
+  }
   /// Of the width, what oil that is carried to this place wets where film has ruptured, or has not formed.
   double share_wet(double offset) const {
-    const bool forward = slip_ > 0.0;
-    double from = forward ? 0.0 : arc_.length;  // where the gap was full last
+    double carried = thickness(arc_.start + (forward() ? 0.0 : arc_.length));
     for (std::size_t k = 0; k < films_.size(); ++k) {
-      const PadProfile::Stretch& s = films_[forward ? k : films_.size() - 1 - k];
+      const PadProfile::Stretch& s = films_[downstream(k)];
       if (s.from <= offset && offset <= s.to) return 1.0;
-      if (forward ? s.to < offset : s.from > offset) from = forward ? s.to : s.from;
+      if (forward() ? s.to < offset : s.from > offset) carried = streams_[downstream(k)].leaves;
     }
-    return std::min(1.0, thickness(arc_.start + from) / thickness(arc_.start + offset));
+    return std::min(1.0, carried / thickness(arc_.start + offset));
+  }
+  /// In film k, whose field is known but for the flow at sample i.
+  double film_flow(std::size_t k, const FilmField& f, std::size_t i) const {
+    return flow(f.theta[i], f.viscosity[i], share_driven(k) * f.slope[i]);
+  }
+  /// Of the flow of film k what it has where it does not take in all of it.
+  double taken(std::size_t k, double flow) const {
+    const Stream& own = streams_[k];
+    const double unit = 0.5 * film_.length * film_.radius * slip_;
+    if (own.full == 1.0 || !(own.comes < flow / unit)) return flow;
+    return std::lerp(unit * own.comes, flow, own.full);
+  }
+  /// Short films: their flow, and the width that it wets.
+  void thin_short_films(FilmField& f, const std::vector<double>& offset) const {
+    for (std::size_t i = 0; i < offset.size(); ++i) {
+      const int k = film_at(offset[i]);
+      if (k < 0) continue;
+      const double part = taken(static_cast<std::size_t>(k), f.flow[i]);
+      if (part == f.flow[i]) continue;
+      f.share[i] = part / f.flow[i];
+      f.flow[i] = part;
+    }
   }
   void add_wetted(FilmField& f, const std::vector<double>& offset) const {
     double sum = 0.0;
@@ -179,6 +219,11 @@ class PadInState {
   double slip_;
   PadFilm pad_;
   std::vector<PadProfile::Stretch> films_;
+  struct Stream {
+    double full;           ///< share of what a film forms with that it takes in
+    double comes, leaves;  ///< m
+  };
+  std::vector<Stream> streams_;  ///< one a film
   std::vector<double> content_;
 };
 

@@ -5,7 +5,9 @@
 //   Q = L (R s h/2 - h^3 P'/(12 eta f_x R)),   P axial mean
 // What enters a stretch of film and does not leave at its other end leaves at the sides. Where the
 // film has ruptured the flow is that of the rupture; where none has formed yet, that of the groove. Films
-// of Reynolds take in what they lack where they form; the inflow of a pad counts it.
+// of Reynolds take in what they lack where they form; the inflow of a pad counts it. One shorter than
+// 1/12 of its pad takes in as much less as it is shorter, and flows that much less: it vanishes without a
+// jump, where one that conserves mass would fill from what is carried to it.
 #pragma once
 #include <elements/films/finite_journal.hpp>
 #include <vector>

@@ -791,11 +791,92 @@ double GridPad::Solver::lacking_past(std::size_t l, std::size_t r) const {
   return wet(l) ? deficit(l) : -deficit(r);
 }
 
+/// Past the faces of a row, and what tells how long its films are.
+struct GridPad::Solver::RowFlow {
+  using Faces = std::array<double, most_columns + 1>;
+  Faces flow;                         ///< NaN: no film
+  Faces pressure, resistance, width;  ///< mean and int 1/(a h^3) between the nodes beside it, rad
+  std::array<bool, most_columns + 1> in_track;
+  double least;  ///< of what is dragged
+};
+
+void GridPad::Solver::find_row(std::size_t j, std::size_t band, bool at_side,
+                               const std::vector<double>& places, RowFlow& row) const {
+  const double S = in_.source[2];
+  row.least = infinity;
+  const auto half = [&](std::size_t cell) {
+    return cell == groove ? 0.0 : 0.5 * (pad_.cells_[cell].to - pad_.cells_[cell].from);
+  };
+  for (std::size_t f = 0; f <= n_; ++f) {
+    const std::size_t own = pad_.round_ && f == n_ ? 0 : f;
+    const std::size_t l = node(left_of(own), j), r = node(right_of(own), j);
+    const double angle = pad_.start_ + places[f];
+    const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
+    const Stretch x = face(own, band);
+    row.in_track[f] = (l < side && open_[l]) || (r < side && open_[r]);
+    row.pressure[f] = 0.5 * (pressure(l) + pressure(r));
+    row.resistance[f] = x.r;
+    row.width[f] = half(left_of(own)) + half(right_of(own));
+    row.flow[f] = nan;
+    if (row.in_track[f]) continue;
+    const double dragged = S * (in_.clearance * circle + x.s / x.r);
+    const double pushed = at_side ? 0.0 : (pressure(r) - pressure(l)) / x.r;
+    if (std::abs(dragged) < std::abs(row.least)) row.least = dragged;
+    if (row.pressure[f] > 0.0)
+      row.flow[f] = dragged - pushed - (at_side ? 0.0 : lacking_past(l, r) / row_share(j));
+  }
+  if (!std::isfinite(row.least)) row.least = 0.0;  // all of it a track
+}
+
+/// Share of what a film forms with that it takes in (film_field.hpp), by the length l that a film of its
+/// pressure has where the gap is widest: int P dtheta = S c |e| (1/h^3) l^4/72.
+double GridPad::Solver::taken_in(double pressure, double resistance, double width) const {
+  const double unit = std::abs(in_.source[2]) * in_.clearance * in_.e.norm() * resistance / width;
+  const double short_film = PadFilm::short_film * pad_.arc_;
+  const double square = std::sqrt(72.0 * pressure / unit) / (short_film * short_film);
+  return square < 1.0 ? square : 1.0;
+}
+
+/// Downstream: a film that forms takes in what it lacks, and after it flows what left it.
+void GridPad::Solver::join_films(RowFlow& row) const {
+  const bool forward = in_.source[2] >= 0.0;
+  const auto at_face = [&](std::size_t step) { return forward ? step : n_ - step; };
+  const auto film = [&](std::size_t step) {
+    return step <= n_ && !std::isnan(row.flow[at_face(step)]);
+  };
+  double carried = row.least;
+  bool first = true;
+  for (std::size_t step = 0; step <= n_;) {
+    if (!film(step)) {
+      row.flow[at_face(step++)] = carried;
+      continue;
+    }
+    double pressure = 0.0, resistance = 0.0, width = 0.0;
+    std::size_t end = step;
+    for (; film(end); ++end) {
+      const std::size_t f = at_face(end);
+      pressure += row.pressure[f] * row.width[f];
+      resistance += row.resistance[f];
+      width += row.width[f];
+    }
+    const bool forms = step > 0 && !pad_.round_ && !row.in_track[at_face(step - 1)];
+    const double taken = forms ? taken_in(pressure, resistance, width) : 1.0;
+    for (std::size_t k = step; k < end; ++k) {
+      double& flow = row.flow[at_face(k)];
+      if (forward ? carried < flow : carried > flow) flow = std::lerp(carried, flow, taken);
+    }
+    // what the first film begins with comes from the groove
+    for (std::size_t k = 0; first && k < step; ++k)
+      row.flow[at_face(k)] = row.flow[at_face(step)];
+    first = false;
+    carried = row.flow[at_face(end - 1)];
+    step = end;
+  }
+}
+
 /// Flow past every face. Where no film is, a row carries what left the film before it, or what the next
 /// one begins with.
 void GridPad::Solver::add_flow(GridField& out) const {
-  const double S = in_.source[2];
-  const bool forward = S >= 0.0;
   for_each_link([&](std::size_t k, std::size_t l, double by, std::size_t, std::size_t) {
     const double q = by * (pressure(k) - pressure(l));
     if (l == side) out.side += q;
@@ -806,38 +887,19 @@ void GridPad::Solver::add_flow(GridField& out) const {
   out.flow.assign(n_ + 1, 0.0);
   for (std::size_t f = 0; f <= n_; ++f)
     out.face_place.push_back(f < n_ ? pad_.cells_[f].from : pad_.cells_[n_ - 1].to);
-  std::array<double, most_columns + 1> flow;
+  RowFlow row;
   const auto add_row = [&](std::size_t j, std::size_t band, double share, bool at_side) {
-    double now = nan, least = infinity;
-    for (std::size_t step = 0; step <= n_; ++step) {
-      const std::size_t f = forward ? step : n_ - step, own = pad_.round_ && f == n_ ? 0 : f;
-      const std::size_t l = node(left_of(own), j), r = node(right_of(own), j);
-      const double angle = pad_.start_ + out.face_place[f];
-      const double circle = 1.0 - in_.e.x() * std::cos(angle) - in_.e.y() * std::sin(angle);
-      const Stretch x = face(own, band);
-      const bool in_track = (l < side && open_[l]) || (r < side && open_[r]);
-      const double dragged = S * (in_.clearance * circle + x.s / x.r);
-      const double pushed = at_side ? 0.0 : (pressure(r) - pressure(l)) / x.r;
-      if (!in_track && std::abs(dragged) < std::abs(least)) least = dragged;
-      if (!in_track && (pressure(l) > 0.0 || pressure(r) > 0.0))
-        now = dragged - pushed - (at_side ? 0.0 : lacking_past(l, r) / row_share(j));
-      flow[f] = now;
-    }
-    // a row without film; all of it a track: no film at all
-    double next = std::isfinite(least) ? least : 0.0;
-    for (std::size_t step = n_ + 1; step-- > 0;) {
-      const std::size_t f = forward ? step : n_ - step;
-      if (std::isnan(flow[f])) flow[f] = next;
-      next = flow[f];
-      out.flow[f] += share * flow[f];
-    }
+    find_row(j, band, at_side, out.face_place, row);
+    join_films(row);
+    for (std::size_t f = 0; f <= n_; ++f)
+      out.flow[f] += share * row.flow[f];
   };
   for (std::size_t j = 0; j < m_; ++j)
     for (const Piece& piece : pieces(j))
       add_row(j, piece.band, piece.share, false);
   // the side itself drags along what the film beside it has, and lets go of the rest
   add_row(m_ - 1, bands_ - 1, pad_.side_share_, true);
-  out.side += pad_.side_share_ * (flow[0] - flow[n_]);
+  out.side += pad_.side_share_ * (row.flow[0] - row.flow[n_]);
 }
 
 /// What a heat balance of the mean over the length needs, ruptured gaps filled: they count so in the

@@ -108,6 +108,11 @@ class GridPad::Solver {
   template <class Link>
   void for_each_link_across(const Link& link) const;
   void add_flow(GridField& out) const;
+  struct RowFlow;
+  void find_row(std::size_t j, std::size_t band, bool at_side, const std::vector<double>& places,
+                RowFlow& row) const;
+  double taken_in(double pressure, double resistance, double width) const;
+  void join_films(RowFlow& row) const;
   void add_heat(GridField& out) const;
   std::array<double, most>& adjoint(int load) { return lambda_[static_cast<std::size_t>(load)]; }
   /// Slopes of the loads and, in the last row, of the shear: by the source; by e and reynolds.

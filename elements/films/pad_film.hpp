@@ -94,6 +94,8 @@ double log_viscosity_at(std::span<const double> knots, double place, double& slo
 
 class PadFilm {
  public:
+  /// Of a pad: films shorter than this take in less where they form (film_field.hpp).
+  static constexpr double short_film = 1.0 / 12.0;
   static constexpr int order = 4;
   static constexpr int points_of_element = 6;  ///< points of the grid an element stands for
 

@@ -527,6 +527,49 @@ TEST(HotFilms, TemperaturesFollowInTime) {
   EXPECT_TRUE(held.says("kept the temperatures") && held.says("time_constant")) << held.log;
 }
 
+// A rotor on a journal bearing and on hot pads, whose unloaded films get shorter with speed and vanish at the end
+// of their pad between 10900 and 12000 rpm: temperatures and equilibrium settle all the way.
+TEST(HotFilms, SettleWhereFilmsVanish) {
+  const auto bearing = [](const char* name, const char* at, const char* kind, const char* heat) {
+    return fmt::format(
+        "[[bearing]]\nname = \"{}\"\nat = \"{}:mid\"\n{}\ndiameter = \"80 mm\"\n"
+        "length = \"60 mm\"\nclearance = \"70 um\"\niso_vg = 46\n"
+        "heat = {{ supply_temperature = \"45 degC\"{} }}\n",
+        name, at, kind, heat);
+  };
+  const std::string pads = "type = \"tilting_pad\"\npads = 5\narc = \"56 deg\"\npreload = 0.4";
+  for (const std::string grid : {"", "\naxial_grid = 4"}) {
+    const DeckRun d(R"(format = 1
+[shaft]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 150, 80], ["b", 300, 90], ["c", 150, 80]]
+[[disk]]
+name = "wheel"
+at = "b:mid"
+mass = "300 kg"
+Ip = "8 kg.m^2"
+Id = "5 kg.m^2"
+[[bearing]]
+name = "T"
+at = "a:start"
+type = "rigid"
+directions = ["x"]
+)" + bearing("L", "a", "type = \"journal\"\nshape = \"two_grooves\"", "") +
+                    bearing("R", "c", (pads + grid).c_str(), ", supply_flow = \"3 L/min\"") +
+                    R"([[step]]
+name = "s"
+type = "static"
+speeds = { start = "10800 rpm", stop = "12000 rpm", points = 13 }
+[output]
+report = false
+)");
+    ASSERT_EQ(d.exit, 0) << d.log;
+    EXPECT_TRUE(d.says("equilibria at 13 speeds, ")) << d.log;
+  }
+}
+
 // Too few looks are said.
 TEST(HotFilms, TemperaturesThatJumpAreSaid) {
   const std::string oil = grooved +

@@ -397,6 +397,42 @@ TEST(FilmHeat, HeatOfTheBath) {
         }
 }
 
+namespace {
+
+/// What leaves the pads, as the journal goes half a turn round (the other half is that of the other pad).
+void expect_steady(const FiniteJournal& film, double eccentricity, int steps) {
+  const HeatSettings s = settings();
+  std::array<std::vector<double>, 2> rise;
+  double mean = 0;
+  for (int k = 0; k <= steps; ++k) {
+    const double turn = k * pi / steps;
+    const Vec2 r = eccentricity * c * Vec2(std::cos(turn), std::sin(turn));
+    const HeatBalance b = balance(film, r, s, 400);
+    for (std::size_t i = 0; i < 2; ++i) {
+      rise[i].push_back(b.pads[i].out - s.supply_temperature);
+      mean += 0.5 * rise[i].back() / (steps + 1);
+    }
+  }
+  // 60 % in a degree; where a film vanished with all that it takes in that was so at once
+  const double most = 0.6 * mean * 180 / steps;
+  for (const std::vector<double>& of : rise)
+    for (std::size_t k = 1; k < of.size(); ++k)
+      ASSERT_NEAR(of[k], of[k - 1], most) << 180.0 * static_cast<double>(k) / steps << " deg";
+}
+
+}  // namespace
+
+// As the journal goes round films get shorter and vanish, in the middle and at the ends of a pad: temperatures do
+// not jump.
+TEST(FilmHeat, VanishingFilmsLeaveNoJump) {
+  for (const double e : {0.157, 0.4, 0.6, 0.8}) {
+    SCOPED_TRACE(e);
+    expect_steady(split_bearing(), e, 1800);
+    SCOPED_TRACE("on a grid");
+    expect_steady(on_grid({{}, {}}), e, 360);
+  }
+}
+
 // Films of Reynolds form again behind a ruptured stretch: what they lack is fresh oil.
 TEST(FilmHeat, FilmsThatFormAgainTakeInFreshOil) {
   const std::vector<JournalPad> whole{{0.0, 350 * pi / 180, pi}};
