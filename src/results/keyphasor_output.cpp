@@ -38,9 +38,7 @@ class KeyphasorOutput final : public TransientOutput {
     filter_.end();
     if (sink_) sink_->close();
   }
-  void report(TransientEnd& end) override {
-    if (out_.report) report_turns(turns_, end);
-  }
+  void report(TransientEnd& end) override { report_turns(turns_, end); }
 
  private:
   void add_probe(const model::Probe& probe, double sense);

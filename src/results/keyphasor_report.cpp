@@ -148,8 +148,9 @@ class KeyphasorReport {
   plot::Axes path_of(const std::vector<Vec2>& centre, double length,
                      const plot::DisplayUnit& unit) const;
   void add_peaks(double unresolved);
-  void add_orbits(double unresolved);
-  void add_orbits_of(std::size_t probe, double unresolved, io::Table& points);
+  void add_orbits();
+  void draw(double unresolved);
+  void draw_orbits(std::size_t probe, double unresolved);
   void list_orbit(const TrackedOrbit& orbit, io::Table& points) const;
   plot::Orbit drawn(const TrackedOrbit& orbit, std::string label) const;
   void say_unresolved(const std::vector<std::string>& what, double unresolved);
@@ -175,13 +176,19 @@ void KeyphasorReport::write() {
     section_.files.emplace_back(
         turns_.shaft.empty() ? "tracking filter" : "tracking filter of " + turns_.shaft,
         turns_.file("tracking.csv"));
+  const double unresolved = unresolved_share(end_.law) * largest_displacement();
+  add_peaks(unresolved);
+  add_orbits();
+  if (end_.job.model.output.report) draw(unresolved);
+}
+
+void KeyphasorReport::draw(double unresolved) {
   constexpr std::size_t fewest = 8;  // turns that make a curve
   const bool few = rows_.size() < fewest && speed_changes(rows_);
   if (few)
     section_.text += fmt::format(
         "\n\n{} turns are too few to show amplitude and phase against {}: they stand in {}.",
         rows_.size(), speed_name(), turns_.file("tracking.csv"));
-  const double unresolved = unresolved_share(end_.law) * largest_displacement();
   std::vector<std::string> left_out;
   for (std::size_t p = 0; p < turns_.probes.size() && !few; ++p) {
     const double size = largest_envelope(p), shown = largest_shown(p);
@@ -199,8 +206,8 @@ void KeyphasorReport::write() {
     add_centreline(p);
   }
   say_unresolved(left_out, unresolved);
-  add_peaks(unresolved);
-  add_orbits(unresolved);
+  for (std::size_t p = 0; p < turns_.probes.size(); ++p)
+    draw_orbits(p, unresolved);
 }
 
 void KeyphasorReport::say_unresolved(const std::vector<std::string>& what, double unresolved) {
@@ -502,7 +509,7 @@ void KeyphasorReport::add_peaks(double unresolved) {
   section_.files.emplace_back("peaks of the response", turns_.file("response_peaks.csv"));
 }
 
-void KeyphasorReport::add_orbits(double unresolved) {
+void KeyphasorReport::add_orbits() {
   io::Table t;
   t.columns = {{"probe", "-", ""},
                {"speed", "rpm", ""},
@@ -510,14 +517,17 @@ void KeyphasorReport::add_orbits(double unresolved) {
                {"angle", "deg", "of the shaft from the first keyphasor mark"},
                {"y", "m", ""},
                {"z", "m", ""}};
-  for (std::size_t p = 0; p < turns_.probes.size(); ++p)
-    add_orbits_of(p, unresolved, t);
+  for (std::size_t p = 0; p < turns_.probes.size(); ++p) {
+    list_orbit(turns_.largest[p], t);
+    for (const TrackedOrbit& passing : turns_.passed)
+      if (passing.probe == p) list_orbit(passing, t);
+  }
   if (t.rows.empty()) return;
   end_.job.folder.write_table(turns_.file("orbits.csv"), t);
   section_.files.emplace_back("orbits", turns_.file("orbits.csv"));
 }
 
-void KeyphasorReport::add_orbits_of(std::size_t p, double unresolved, io::Table& points) {
+void KeyphasorReport::draw_orbits(std::size_t p, double unresolved) {
   const std::string& name = turns_.probes[p].name;
   const TrackedOrbit& largest = turns_.largest[p];
   if (largest.size > unresolved) {
@@ -528,15 +538,11 @@ void KeyphasorReport::add_orbits_of(std::size_t p, double unresolved, io::Table&
     f.caption = "Displacement about its mean; a dot where the keyphasor fires.";
     section_.figures.push_back(std::move(f));
   }
-  list_orbit(largest, points);
   std::vector<plot::Orbit> at_speeds;
-  for (const TrackedOrbit& passing : turns_.passed) {
-    if (passing.probe != p) continue;
-    list_orbit(passing, points);
-    if (passing.size > unresolved)
+  for (const TrackedOrbit& passing : turns_.passed)
+    if (passing.probe == p && passing.size > unresolved)
       at_speeds.push_back(
           drawn(passing, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(passing.speed), passing.t)));
-  }
   if (!at_speeds.empty())
     section_.figures.push_back(
         plot::plot_orbit(figure_name(p) + "_orbits", name + ": orbits at given speeds", at_speeds));

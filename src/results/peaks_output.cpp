@@ -33,7 +33,6 @@ class PeaksOutput final : public TransientOutput {
   }
 
   void report(TransientEnd& end) override {
-    if (!end.job.model.output.report) return;
     io::Table t;
     t.title = "Peaks";
     t.columns = {
@@ -49,6 +48,7 @@ class PeaksOutput final : public TransientOutput {
       t.add({p.name, p.amplitude, to_rpm(p.speed), p.time, motion.amplitude(), motion.time()});
     }
     end.job.folder.write_table(end.step.name + "_peaks.csv", t);
+    if (!end.job.model.output.report) return;
     end.section.tables.push_back(std::move(t));
   }
 

@@ -75,6 +75,26 @@ TEST(Figures, PeaksTellMotionFromSag) {
   EXPECT_GE(peak.at("motion at [s]"), 0.01);
 }
 
+// A report draws what stands in tables: it adds none.
+TEST(Figures, TablesDoNotNeedTheReport) {
+  std::string deck = lateral_mass(m, "0 m/s^2", springs) +
+                     driven("3000 rpm", "duration = \"0.6 s\"\nstart = \"rest\"\n");
+  const std::string ramp =
+      R"({ type = "ramp", time = ["0 s", "0.6 s"], value = ["1000 rpm", "6000 rpm"] })";
+  deck.replace(deck.find("\"3000 rpm\""), 10, ramp);
+  const DeckRun with(deck), without(deck + "[output]\nreport = false\n");
+  ASSERT_EQ(without.exit, 0) << without.log;
+  std::size_t found = 0;
+  for (const fs::directory_entry& file : fs::directory_iterator(with.folder / "r")) {
+    if (file.path().extension() != ".csv") continue;
+    EXPECT_EQ(text_of(without.folder / "r" / file.path().filename()), text_of(file.path()));
+    ++found;
+  }
+  EXPECT_GT(found, 4);
+  for (const char* name : {"t_peaks.csv", "t_response_peaks.csv", "t_orbits.csv"})
+    EXPECT_TRUE(fs::exists(without.folder / "r" / name)) << name;
+}
+
 // A path between a few rows a turn is not drawn, and the picture says so.
 TEST(Figures, AnOrbitOfFewRowsIsDots) {
   for (const auto& [every, few] : {std::pair{"3 ms", true}, {"1 ms", false}}) {
