@@ -27,31 +27,72 @@
 // and what a ruptured stretch holds is smeared over some cells on its way.
 #pragma once
 #include <elements/films/finite_journal.hpp>
-#include <memory>
+#include <array>
 #include <mutex>
 #include <vector>
 
 namespace whirl::elements {
+
+namespace carried_oil {
+template <class T>
+struct Oil;
+}
+
+/// From a cell to a neighbour.
+struct CellStep {
+  Index column, row;
+};
+
+/// The contents of a pad's cells in balance. What was asked last is kept: the cells ask one after
+/// another, of any thread.
+class KeptBalance {
+ public:
+  /// find: the contents with the journal at r, m, at the slip, rad/s.
+  template <class Find>
+  double content(std::size_t cell, const Vec2& r, double slip, const Find& find) {
+    const std::lock_guard guard(lock_);
+    if (r_ != r || slip_ != slip) {
+      content_ = find(r, slip);
+      r_ = r;
+      slip_ = slip;
+    }
+    return content_[cell];
+  }
+
+ private:
+  std::mutex lock_;
+  Vec2 r_ = Vec2::Constant(nan);
+  double slip_ = nan;
+  std::vector<double> content_;
+};
 
 /// The cells of one pad.
 class CarriedPad {
  public:
   static constexpr double bulk = 1.7e9;  ///< of mineral oil, Pa
   static constexpr double mixed = 1e-4;  ///< of the volume: where bubbles still give way
+  /// Whose contents the balance of a cell is of; itself second.
+  static constexpr Index around = 3;
+  static constexpr std::array<CellStep, around> steps{{{-1, 0}, {0, 0}, {1, 0}}};
+  /// Of the cells at one angle, in time; and of those, how many a node has.
+  static constexpr Index rows_in_time = 1, rows_of_node = 1;
 
   /// @pre k below film.surface->arcs().size(); film.mass_conserving without heat; the pad has ends.
   CarriedPad(const FiniteJournal& film, std::size_t k);
 
   Index cells() const { return static_cast<Index>(normal_.size()); }
+  static constexpr Index rows() { return 1; }
   /// Middle of a cell, rad.
   double middle(Index i) const { return start_ + (static_cast<double>(i) + 0.5) * width_; }
   double width() const { return width_; }
   /// Mean gap of a cell with the journal at r, m.
   double gap(Index i, const Vec2& r) const;
+  double gap(Index i, Index, const Vec2& r) const { return gap(i, r); }
   /// Nowhere from face to face a cell touches.
   bool open(Index i, const Vec2& r) const;
   /// Content of the full cell with the journal centred, m: what its unknown is counted from.
   double reference(Index i) const { return gap(i, Vec2::Zero()); }
+  double reference(Index i, Index) const { return reference(i); }
   /// Axial mean, Pa. content: m.
   double pressure(double content, double gap) const;
 
@@ -69,11 +110,18 @@ class CarriedPad {
   template <class T>
   Cell<T> cell(Index i, const T& ry, const T& rz, const T& slip, const T& before, const T& own,
                const T& next) const;
+  template <class T>
+  Cell<T> cell(Index i, Index, const T& ry, const T& rz, const T& slip,
+               const std::array<T, around>& content) const {
+    return cell(i, ry, rz, slip, content[0], content[1], content[2]);
+  }
   /// The contents, m, at which nothing changes with the journal still at r; at rest: full.
   /// NaN where the journal stands outside the film.
   std::vector<double> balanced(const Vec2& r, double slip) const;
-  /// That of one cell. What was asked last is kept: the cells ask one after another, of any thread.
-  double balanced_cell(Index i, const Vec2& r, double slip) const;
+  /// Force on a journal at r with the oil in balance, N; NaN where there is none.
+  Vec2 force_in_balance(const Vec2& r, double slip) const;
+  /// That of one cell (KeptBalance).
+  double balanced_cell(Index i, Index row, const Vec2& r, double slip) const;
 
   /// Moves the contents on by a step of implicit Euler of the length 1/rate, s, at whose end the
   /// journal stands at r. False: no solution was found.
@@ -81,90 +129,27 @@ class CarriedPad {
 
   /// What a row of the balance in m/s is times to be a force, N s/m.
   double row_factor() const;
-  /// Power of the pump that a cell takes, W. fed: Cell::fed; w, slip: FilmPoint.
-  double pump(Index i, double fed, const Vec2& w, double slip) const;
+  double row_factor(Index, Index) const { return row_factor(); }
+  /// Power of the pump that a cell takes, W. fed: Cell::fed; part: of what the walls displace.
+  double pump(Index i, double fed, const FilmPoint& p, double part = 1.0) const;
   /// Arm of the push in the torque: half of c_p - c_b, a quarter turn ahead of where the pad is
   /// thinnest, m.
   Vec2 lever() const { return 0.5 * lift_ * Vec2(-thinnest_.y(), thinnest_.x()); }
 
  private:
   template <class T>
-  struct Oil {
-    T gap, share, pressure;
-  };
-  template <class T>
-  Oil<T> oil(Index i, const T& ry, const T& rz, const T& content) const;
+  carried_oil::Oil<T> oil(Index i, const T& ry, const T& rz, const T& content) const;
   template <class T>
   T gap_at(double angle, const T& ry, const T& rz) const;
   template <class T>
-  T flow_along(Index face, const T& ry, const T& rz, const T& slip, const Oil<T>* left,
-               const Oil<T>* right, T& driven) const;
+  T flow_along(Index face, const T& ry, const T& rz, const T& slip, const carried_oil::Oil<T>* left,
+               const carried_oil::Oil<T>* right, T& driven) const;
 
   FiniteJournal film_;
-  struct Balance {
-    std::mutex lock;
-    Vec2 r = Vec2::Constant(nan);
-    double slip = nan;
-    std::vector<double> content;
-  };
-  mutable Balance last_;
+  mutable KeptBalance last_;
   double start_, width_, clearance_, lift_;
   Vec2 thinnest_;
   std::vector<Vec2> normal_;  ///< int n dtheta of each cell
 };
-
-/// One cell of a film. Nodes: 0 journal, 1 housing; scalars in which its pad moves (Moves of them, each
-/// in its unit); then scalars in m: content of the cell before, of the next one and of its own, each less
-/// CarriedPad::reference. At the ends of a pad the cell itself stands for the one that is not there.
-/// A pad that has moved by q sees the journal at r - sum q_k directions_k, and takes F.directions_k.
-template <int Moves, bool Offsets = false>
-struct PadCell {
-  static constexpr int n_nodes = 5 + Moves, own = 1, width = 7, size = 7 * n_nodes;
-  static constexpr system::Axes axes = Offsets ? system::Axes::own : system::Axes::any;
-  static constexpr bool has_M = false, has_C = true, has_K = true;
-  static constexpr system::Family family = system::Family::support;
-  static constexpr system::Dependence depends{.spin = true};
-  using Nodes = system::Nodes<n_nodes>;
-
-  std::shared_ptr<const CarriedPad> pad;
-  Index cell = 0;
-  std::array<double, 2> offset{0.0, 0.0};    ///< of journal and housing, m
-  std::array<Vec2, at(Moves)> directions{};  ///< of the pad's centre, m a unit of its scalars
-
-  void add_force(const Nodes& x, const system::Context& c, system::ForceX<size>& f) const;
-  void add_tangent(const Nodes& x, const system::Context& c, system::TangentX<size>& t) const;
-  void add_energy(const Nodes& x, const system::Context& c, system::Energy& e) const;
-  /// The content in balance with journal and pad where they are, at rest.
-  void relax(const Nodes& x, const system::Context& c, std::array<double, own>& q) const;
-  /// Force and torques of the cell on journal and housing (lateral_joint.hpp).
-  Vector<4> load(const Nodes& x, const system::Context& c) const;
-  /// The cell's unknown where it is full, without pressure, m.
-  double full(const Nodes& x) const;
-  /// Of the journal against the centre of the pad.
-  LateralMotion motion(const Nodes& x, const system::Context& c) const;
-
- private:
-  static constexpr int before = 2 + Moves, next = 3 + Moves, held = 4 + Moves;  ///< nodes
-  using Link = LateralLink<Offsets>;
-  static system::Nodes<2> ends(const Nodes& x) { return {x[0], x[1]}; }
-  typename Link::Spins spins(const Nodes& x) const {
-    return {system::Spin(*x[0]), system::Spin(*x[1])};
-  }
-  struct Contents {
-    double before, own, next;
-  };
-  Contents contents(const Nodes& x) const;
-};
-
-extern template struct PadCell<0, false>;
-extern template struct PadCell<0, true>;
-extern template struct PadCell<1, false>;
-extern template struct PadCell<1, true>;
-extern template struct PadCell<2, false>;
-extern template struct PadCell<2, true>;
-
-/// Of a pad that stands in its housing.
-template <bool Offsets = false>
-using CarriedCell = PadCell<0, Offsets>;
 
 }  // namespace whirl::elements

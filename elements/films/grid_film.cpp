@@ -17,14 +17,6 @@ namespace {
   throw run_error("E84", std::string("journal bearing: ") + what);
 }
 
-/// Places in ascending order, each once.
-std::vector<double> distinct(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  const auto same = [](double a, double b) { return b - a < 1e-9; };
-  x.erase(std::unique(x.begin(), x.end(), same), x.end());
-  return x;
-}
-
 /// How many cells each stretch between stops has: by its share of `cells`, at least `fewest`, in all no
 /// more than `most`.
 std::vector<int> shared_out(const std::vector<double>& stops, int cells, int fewest, int most) {
@@ -80,12 +72,19 @@ void check_recesses(const std::vector<Recess>& recesses, double arc) {
 
 }  // namespace
 
+std::vector<double> distinct_places(std::vector<double> x) {
+  std::sort(x.begin(), x.end());
+  const auto same = [](double a, double b) { return b - a < 1e-9; };
+  x.erase(std::unique(x.begin(), x.end(), same), x.end());
+  return x;
+}
+
 GridPad::GridPad(double start, double arc, bool round, double ratio, int columns, int rows,
                  const std::vector<Recess>& recesses)
     : start_(start),
       arc_(arc),
       ratio_(ratio),
-      has_recesses_(!recesses.empty()),
+      recesses_(recesses),
       round_(round) {
   WHIRL_EXPECTS(arc > 0.0 && arc <= two_pi * (1 + 1e-12) && ratio > 0.0);
   WHIRL_EXPECTS(columns >= 8 && columns <= most_columns && rows >= 2 && rows <= most_even_rows);
@@ -96,8 +95,8 @@ GridPad::GridPad(double start, double arc, bool round, double ratio, int columns
     along.push_back(std::min(r.to, arc));
     across.push_back(r.width);
   }
-  const std::vector<double> edges = columns_between(distinct(along), columns);
-  const std::vector<double> widths = distinct(across),
+  const std::vector<double> edges = columns_between(distinct_places(along), columns);
+  const std::vector<double> widths = distinct_places(across),
                             elements = elements_between(widths, (rows + 1) / 2);
   bands_ = widths.size() - 1;
   if (bands_ > most_bands || (round && bands_ > 1))
@@ -593,7 +592,7 @@ void GridPad::Solver::find_film() {
   double size = 0.0;
   for (std::size_t k = 0; k < size_; ++k)
     size = std::max(size, std::abs(along_in_[k] + across_in_[k]));
-  const bool guessed = !pad_.has_recesses_;
+  const bool guessed = pad_.recesses_.empty();
   if (guessed)
     guess_film();
   else

@@ -93,6 +93,9 @@ struct GridField {
   double highest = 0, highest_at = 0;    ///< P anywhere, and where
 };
 
+/// Places in ascending order, each once.
+std::vector<double> distinct_places(std::vector<double> x);
+
 class GridPad {
  public:
   static constexpr int most_columns = 480, most_rows = 16, most_even_rows = 10;
@@ -112,6 +115,7 @@ class GridPad {
   /// Cells along the arc and nodes along half the length, as they came out.
   int columns() const { return static_cast<int>(cells_.size()); }
   int rows() const { return static_cast<int>(rows_.size()); }
+  const std::vector<Recess>& recesses() const { return recesses_; }
 
  private:
   struct Point {
@@ -148,7 +152,8 @@ class GridPad {
   class Solver;
 
   double start_, arc_, ratio_;
-  bool has_recesses_, round_;
+  std::vector<Recess> recesses_;
+  bool round_;
   std::size_t bands_ = 1;
   std::vector<Cell> cells_;
   std::vector<Row> rows_;

@@ -41,27 +41,21 @@ double root_near(double near, double step, double widest, double scale, const F&
 
 }  // namespace
 
-PadAtRest::PadAtRest(const TiltingPad& pad)
+template <class Oil>
+PadAtRest<Oil>::PadAtRest(const TiltingPad& pad, std::shared_ptr<const Oil> oil)
     : pad_(pad),
-      oil_(std::make_shared<const CarriedPad>(pad.film, 0)) {
+      oil_(std::move(oil)) {
   // a pivot without mass and damper that only its oil holds would move as far as rounding wants it
   if (pad.pivot_stiffness > 0.0) pad_.pivot_damping += pad.tilt_damping / (pad.arm * pad.arm);
 }
 
-Vec2 PadAtRest::force(const Vec2& r, double slip) const {
-  const std::vector<double> content = oil_->balanced(r, slip);
-  const Index last = oil_->cells() - 1;
-  Vec2 sum = Vec2::Zero();
-  for (Index i = 0; i <= last; ++i) {
-    const double before = content[at(std::max<Index>(i - 1, 0))];
-    const double next = content[at(std::min(i + 1, last))];
-    const auto cell = oil_->cell(i, r.x(), r.y(), slip, before, content[at(i)], next);
-    sum -= Vec2(cell.push[0], cell.push[1]);
-  }
-  return sum;
+template <class Oil>
+Vec2 PadAtRest<Oil>::force(const Vec2& r, double slip) const {
+  return oil_->force_in_balance(r, slip);
 }
 
-double PadAtRest::find_tilt(const LateralMotion& journal, double pressed, double near) const {
+template <class Oil>
+double PadAtRest<Oil>::find_tilt(const LateralMotion& journal, double pressed, double near) const {
   const double slip = journal.spin - journal.housing_spin;
   const double size = pad_.film.surface->pad_clearance() / pad_.arm;
   const auto moment = [&](double tilt) {
@@ -72,9 +66,10 @@ double PadAtRest::find_tilt(const LateralMotion& journal, double pressed, double
 }
 
 /// tilt_at: the tilt that belongs to a compression.
+template <class Oil>
 template <class Tilt>
-double PadAtRest::find_pressed(const LateralMotion& journal, const Vec2& q,
-                               const Tilt& tilt_at) const {
+double PadAtRest<Oil>::find_pressed(const LateralMotion& journal, const Vec2& q,
+                                    const Tilt& tilt_at) const {
   const double slip = journal.spin - journal.housing_spin;
   const auto balance = [&](double by) {
     const LateralMotion own = pad_.seen(journal, Vec2(tilt_at(by), by), Vec2::Zero());
@@ -84,14 +79,16 @@ double PadAtRest::find_pressed(const LateralMotion& journal, const Vec2& q,
   return root_near(q.y(), 1e-3 * size, size, pad_.pivot_force(size), balance);
 }
 
-Vec2 PadAtRest::find_near(const LateralMotion& journal, const Vec2& q) const {
+template <class Oil>
+Vec2 PadAtRest<Oil>::find_near(const LateralMotion& journal, const Vec2& q) const {
   if (pad_.pivot_stiffness == 0.0) return {find_tilt(journal, 0.0, q.x()), 0.0};
   const auto tilt_at = [&](double by) { return find_tilt(journal, by, q.x()); };
   const double by = find_pressed(journal, q, tilt_at);
   return {tilt_at(by), by};
 }
 
-Vec2 PadAtRest::find(const LateralMotion& journal, const Vec2& q) const {
+template <class Oil>
+Vec2 PadAtRest<Oil>::find(const LateralMotion& journal, const Vec2& q) const {
   LateralMotion still = journal;
   still.v.setZero();
   const Vec2 momentary = q.isZero(0.0) ? pad_.settled(still) : Vec2(nan, nan);
@@ -100,7 +97,8 @@ Vec2 PadAtRest::find(const LateralMotion& journal, const Vec2& q) const {
   return near.allFinite() || q.isZero(0.0) ? near : find(journal, Vec2::Zero());
 }
 
-Vec2 PadAtRest::followed(const LateralMotion& journal, const Vec2& q) const {
+template <class Oil>
+Vec2 PadAtRest<Oil>::followed(const LateralMotion& journal, const Vec2& q) const {
   const bool tilts = pad_.inertia == 0.0;
   const bool gives = pad_.pivot_stiffness > 0.0 && pad_.mass == 0.0;
   if (tilts && (gives || pad_.pivot_stiffness == 0.0)) return settled(journal, q);
@@ -109,7 +107,8 @@ Vec2 PadAtRest::followed(const LateralMotion& journal, const Vec2& q) const {
   return q;
 }
 
-Vec2 PadAtRest::settled(const LateralMotion& journal, const Vec2& q) const {
+template <class Oil>
+Vec2 PadAtRest<Oil>::settled(const LateralMotion& journal, const Vec2& q) const {
   const std::lock_guard guard(last_.lock);
   const double slip = journal.spin - journal.housing_spin;
   if (last_.r != journal.r || last_.slip != slip || last_.from != q) {
@@ -120,6 +119,9 @@ Vec2 PadAtRest::settled(const LateralMotion& journal, const Vec2& q) const {
   }
   return last_.found;
 }
+
+template class PadAtRest<CarriedPad>;
+template class PadAtRest<CarriedGrid>;
 
 namespace {
 
@@ -142,79 +144,92 @@ Vec2 place_of(const Nodes& x) {
 
 }  // namespace
 
-template <bool Pressed, bool Offsets>
-LateralMotion PadMount<Pressed, Offsets>::journal(const Nodes& x) const {
+template <class Oil, bool Pressed, bool Offsets>
+LateralMotion PadMount<Oil, Pressed, Offsets>::journal(const Nodes& x) const {
   LateralMotion m = motion_between<Offsets>(*x[0], *x[1], offset, {});
   m.v.setZero();
   return m;
 }
 
-template <bool Pressed, bool Offsets>
-Vec2 PadMount<Pressed, Offsets>::place(const Nodes& x) const {
+template <class Oil, bool Pressed, bool Offsets>
+Vec2 PadMount<Oil, Pressed, Offsets>::place(const Nodes& x) const {
   return place_of<Pressed>(x);
 }
 
-template <bool Pressed, bool Offsets>
-void PadMount<Pressed, Offsets>::add_force(const Nodes& x, const system::Context&,
-                                           system::ForceX<size>& f) const {
+template <class Oil, bool Pressed, bool Offsets>
+void PadMount<Oil, Pressed, Offsets>::add_force(const Nodes& x, const system::Context&,
+                                                system::ForceX<size>& f) const {
   pad_mount::add_force<Pressed>(rest->pad(), x, f);
 }
 
-template <bool Pressed, bool Offsets>
-void PadMount<Pressed, Offsets>::add_tangent(const Nodes& x, const system::Context&,
-                                             system::TangentX<size>& t) const {
+template <class Oil, bool Pressed, bool Offsets>
+void PadMount<Oil, Pressed, Offsets>::add_tangent(const Nodes& x, const system::Context&,
+                                                  system::TangentX<size>& t) const {
   pad_mount::add_tangent<Pressed>(rest->pad(), x, t);
 }
 
-template <bool Pressed, bool Offsets>
-void PadMount<Pressed, Offsets>::add_energy(const Nodes& x, const system::Context&,
-                                            system::Energy& e) const {
+template <class Oil, bool Pressed, bool Offsets>
+void PadMount<Oil, Pressed, Offsets>::add_energy(const Nodes& x, const system::Context&,
+                                                 system::Energy& e) const {
   pad_mount::add_energy<Pressed>(rest->pad(), x, e);
 }
 
-template <bool Pressed, bool Offsets>
-void PadMount<Pressed, Offsets>::relax(const Nodes& x, const system::Context&,
-                                       std::array<double, own>& q) const {
+template <class Oil, bool Pressed, bool Offsets>
+void PadMount<Oil, Pressed, Offsets>::relax(const Nodes& x, const system::Context&,
+                                            std::array<double, own>& q) const {
   const Vec2 settled = rest->settled(journal(x), place(x));
   if (!settled.allFinite()) return;
   q[0] = settled.x();
   if constexpr (Pressed) q[1] = settled.y();
 }
 
-template struct PadMount<false, false>;
-template struct PadMount<false, true>;
-template struct PadMount<true, false>;
-template struct PadMount<true, true>;
+template struct PadMount<CarriedPad, false, false>;
+template struct PadMount<CarriedPad, false, true>;
+template struct PadMount<CarriedPad, true, false>;
+template struct PadMount<CarriedPad, true, true>;
+template struct PadMount<CarriedGrid, false, false>;
+template struct PadMount<CarriedGrid, false, true>;
+template struct PadMount<CarriedGrid, true, false>;
+template struct PadMount<CarriedGrid, true, true>;
 
-template <bool Pressed, bool Offsets>
-void TiltingCell<Pressed, Offsets>::relax(const Nodes& x, const system::Context& c,
-                                          std::array<double, own>& q) const {
+template <class Oil, bool Pressed, bool Offsets>
+void TiltingCell<Oil, Pressed, Offsets>::relax(const Nodes& x, const system::Context& c,
+                                               typename Cell::Rows& q) const {
   const LateralMotion journal = motion_between<Offsets>(*x[0], *x[1], film.offset, c);
   const Vec2 settled = rest->settled(journal, place_of<Pressed>(x));
   if (!settled.allFinite()) return film.relax(x, c, q);
   const LateralMotion seen = rest->pad().seen(journal, settled, Vec2::Zero());
   const double slip = seen.spin - seen.housing_spin;
-  const double content = film.pad->balanced_cell(film.cell, seen.r, slip);
-  if (std::isfinite(content)) q[0] = content - film.pad->reference(film.cell);
+  for (std::size_t j = 0; j < q.size(); ++j) {
+    const Index row = film.block * Oil::rows_of_node + static_cast<Index>(j);
+    const double content = film.pad->balanced_cell(film.cell, row, seen.r, slip);
+    if (std::isfinite(content)) q[j] = content - film.pad->reference(film.cell, row);
+  }
 }
 
-template <bool Pressed, bool Offsets>
-auto TiltingCell<Pressed, Offsets>::of(const std::shared_ptr<const PadAtRest>& rest, Index i,
-                                       const std::array<double, 2>& offset) -> TiltingCell {
+template <class Oil, bool Pressed, bool Offsets>
+auto TiltingCell<Oil, Pressed, Offsets>::of(const std::shared_ptr<const PadAtRest<Oil>>& rest,
+                                            Index i, const std::array<double, 2>& offset,
+                                            Index block) -> TiltingCell {
   WHIRL_EXPECTS(rest && i >= 0 && i < rest->oil()->cells());
   TiltingCell out;
   out.rest = rest;
   out.film.pad = rest->oil();
   out.film.cell = i;
+  out.film.block = block;
   out.film.offset = offset;
   for (std::size_t k = 0; k < out.film.directions.size(); ++k)
     out.film.directions[k] = rest->pad().direction(static_cast<int>(k));
   return out;
 }
 
-template struct TiltingCell<false, false>;
-template struct TiltingCell<false, true>;
-template struct TiltingCell<true, false>;
-template struct TiltingCell<true, true>;
+template struct TiltingCell<CarriedPad, false, false>;
+template struct TiltingCell<CarriedPad, false, true>;
+template struct TiltingCell<CarriedPad, true, false>;
+template struct TiltingCell<CarriedPad, true, true>;
+template struct TiltingCell<CarriedGrid, false, false>;
+template struct TiltingCell<CarriedGrid, false, true>;
+template struct TiltingCell<CarriedGrid, true, false>;
+template struct TiltingCell<CarriedGrid, true, true>;
 
 }  // namespace whirl::elements

@@ -14,20 +14,20 @@
 // Source: H. G. Elrod, J. Lubr. Technol. 103, 1981, doi 10.1115/1.3251669 (cells); J. W. Lund, ASLE
 // Trans. 7, 1964, doi 10.1080/05698196408972064 (pads).
 #pragma once
-#include <elements/films/carried_film.hpp>
+#include <elements/films/pad_cell.hpp>
 #include <elements/films/tilting_pad.hpp>
 
 namespace whirl::elements {
 
 /// A pad and the cells of its film, and where both are in balance.
+template <class Oil = CarriedPad>
 class PadAtRest {
  public:
-  /// A pivot that gives has a rest damper as the tilt has (tilting_pad.hpp).
-  /// @pre pad.film.mass_conserving without heat.
-  explicit PadAtRest(const TiltingPad& pad);
+  /// oil: the cells of its film. A pivot that gives has a rest damper as the tilt has (tilting_pad.hpp).
+  PadAtRest(const TiltingPad& pad, std::shared_ptr<const Oil> oil);
 
   const TiltingPad& pad() const { return pad_; }
-  const std::shared_ptr<const CarriedPad>& oil() const { return oil_; }
+  const std::shared_ptr<const Oil>& oil() const { return oil_; }
   /// Tilt, rad, and compression of the pivot, m, at which pad and oil are in balance with a journal that
   /// stands still where it is. There may be several (a pad that carries a little, one that the journal has
   /// left): the nearest to q, of a pad that has not moved yet, q = 0, that of the momentary film. NaN: there
@@ -47,7 +47,7 @@ class PadAtRest {
   double find_tilt(const LateralMotion& journal, double pressed, double near) const;
 
   TiltingPad pad_;
-  std::shared_ptr<const CarriedPad> oil_;
+  std::shared_ptr<const Oil> oil_;
   struct Found {
     std::mutex lock;
     Vec2 r = Vec2::Constant(nan);
@@ -57,10 +57,13 @@ class PadAtRest {
   mutable Found last_;
 };
 
+extern template class PadAtRest<CarriedPad>;
+extern template class PadAtRest<CarriedGrid>;
+
 /// Springs, dampers and inertia of a pad (tilting_pad.hpp), without its film. Nodes: 0 journal, 1 housing
 /// (for where the pad settles), 2 (scalar) tilt in rad, and where the pivot gives 3 (scalar) its
 /// compression in m.
-template <bool Pressed, bool Offsets = false>
+template <class Oil, bool Pressed, bool Offsets = false>
 struct PadMount {
   static constexpr int n_nodes = Pressed ? 4 : 3, width = 7, size = 7 * n_nodes;
   static constexpr int own = n_nodes - 2;  ///< unknowns of the pad
@@ -74,7 +77,7 @@ struct PadMount {
   }
   using Nodes = system::Nodes<n_nodes>;
 
-  std::shared_ptr<const PadAtRest> rest;
+  std::shared_ptr<const PadAtRest<Oil>> rest;
   std::array<double, 2> offset{0.0, 0.0};  ///< of journal and housing, m
 
   void add_force(const Nodes& x, const system::Context& c, system::ForceX<size>& f) const;
@@ -87,17 +90,22 @@ struct PadMount {
   void relax(const Nodes& x, const system::Context& c, std::array<double, own>& q) const;
 };
 
-extern template struct PadMount<false, false>;
-extern template struct PadMount<false, true>;
-extern template struct PadMount<true, false>;
-extern template struct PadMount<true, true>;
+extern template struct PadMount<CarriedPad, false, false>;
+extern template struct PadMount<CarriedPad, false, true>;
+extern template struct PadMount<CarriedPad, true, false>;
+extern template struct PadMount<CarriedPad, true, true>;
+extern template struct PadMount<CarriedGrid, false, false>;
+extern template struct PadMount<CarriedGrid, false, true>;
+extern template struct PadMount<CarriedGrid, true, false>;
+extern template struct PadMount<CarriedGrid, true, true>;
 
-/// One cell of the film of a pad that tilts. Nodes: 0 journal, 1 housing, 2 (scalar) tilt in rad, where
+/// The cells of a pad that tilts, at one angle. Nodes: 0 journal, 1 housing, 2 (scalar) tilt in rad, where
 /// the pivot gives 3 (scalar) its compression in m, then contents as PadCell.
-template <bool Pressed, bool Offsets = false>
+template <class Oil, bool Pressed, bool Offsets = false>
 struct TiltingCell {
-  using Cell = PadCell<Pressed ? 2 : 1, Offsets>;
+  using Cell = PadCell<Oil, Pressed ? 2 : 1, Offsets>;
   static constexpr int n_nodes = Cell::n_nodes, own = 1, width = Cell::width, size = Cell::size;
+  static constexpr int own_each = Cell::own_each;
   static constexpr system::Axes axes = Cell::axes;
   static constexpr bool has_M = Cell::has_M, has_C = Cell::has_C, has_K = Cell::has_K;
   static constexpr system::Family family = Cell::family;
@@ -105,11 +113,11 @@ struct TiltingCell {
   using Nodes = system::Nodes<n_nodes>;
 
   Cell film;
-  std::shared_ptr<const PadAtRest> rest;
+  std::shared_ptr<const PadAtRest<Oil>> rest;
 
-  /// @pre i below the cells of the pad. offset: of journal and housing, m.
-  static TiltingCell of(const std::shared_ptr<const PadAtRest>& rest, Index i,
-                        const std::array<double, 2>& offset);
+  /// @pre i below the cells of the pad. offset: of journal and housing, m; block: of its rows.
+  static TiltingCell of(const std::shared_ptr<const PadAtRest<Oil>>& rest, Index i,
+                        const std::array<double, 2>& offset, Index block = 0);
 
   void add_force(const Nodes& x, const system::Context& c, system::ForceX<size>& f) const {
     film.add_force(x, c, f);
@@ -120,18 +128,22 @@ struct TiltingCell {
   void add_energy(const Nodes& x, const system::Context& c, system::Energy& e) const {
     film.add_energy(x, c, e);
   }
-  /// The content in balance with the journal where it is, and with a pad that is in balance itself, where
+  /// The contents in balance with the journal where it is, and with a pad that is in balance itself, where
   /// it is otherwise.
-  void relax(const Nodes& x, const system::Context& c, std::array<double, own>& q) const;
+  void relax(const Nodes& x, const system::Context& c, typename Cell::Rows& q) const;
   /// Force and torques on journal and housing (lateral_joint.hpp).
   Vector<4> load(const Nodes& x, const system::Context& c) const { return film.load(x, c); }
-  /// The cell's unknown where it is full, without pressure, m.
-  double full(const Nodes& x) const { return film.full(x); }
+  /// The unknowns where the cells are full, without pressure, m.
+  typename Cell::Rows full(const Nodes& x) const { return film.full(x); }
 };
 
-extern template struct TiltingCell<false, false>;
-extern template struct TiltingCell<false, true>;
-extern template struct TiltingCell<true, false>;
-extern template struct TiltingCell<true, true>;
+extern template struct TiltingCell<CarriedPad, false, false>;
+extern template struct TiltingCell<CarriedPad, false, true>;
+extern template struct TiltingCell<CarriedPad, true, false>;
+extern template struct TiltingCell<CarriedPad, true, true>;
+extern template struct TiltingCell<CarriedGrid, false, false>;
+extern template struct TiltingCell<CarriedGrid, false, true>;
+extern template struct TiltingCell<CarriedGrid, true, false>;
+extern template struct TiltingCell<CarriedGrid, true, true>;
 
 }  // namespace whirl::elements

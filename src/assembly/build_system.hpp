@@ -122,8 +122,8 @@ struct FloatingRingBearing {
 /// The oil of a film that conserves mass, where the step follows it.
 struct CarriedOil {
   std::string bearing;           ///< for messages: "bearing 'DE'"
-  std::vector<Index> unknowns;   ///< scalar nodes, one a cell
-  std::vector<Index> following;  ///< those of pads that tilt
+  std::vector<Index> unknowns;   ///< places in q, one a cell
+  std::vector<Index> following;  ///< scalar nodes of pads that tilt
   /// Unknowns of the cells, m, and of pads with the oil in balance and the journal where it is; NaN where
   /// none is found. What of a pad has inertia stays where it is.
   struct Balance {
@@ -132,6 +132,11 @@ struct CarriedOil {
   std::function<Balance(const NodeAt&)> balanced;
   /// Those of full cells without pressure, journal and pads where they are, m.
   std::function<std::vector<double>(const NodeAt&)> full;
+  /// Of a film on a grid along the axis too, whose cells are not those of statics: how many there are
+  /// ("40 x 6 cells"), and how far the film with its oil in balance stands from that of statics where
+  /// journal and pads are, of the force; NaN: there is no balance.
+  std::string grid;
+  std::function<double(const NodeAt&)> off_statics;
 };
 
 /// What the controller of a magnetic bearing does.

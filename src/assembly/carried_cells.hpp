@@ -1,31 +1,79 @@
 // Cells of oil as elements between nodes, for all films that conserve mass. Internal to src/assembly.
 #pragma once
 #include <assembly/support_parts.hpp>
-#include <elements/films/carried_film.hpp>
+#include <elements/films/pad_cell.hpp>
 #include <elements/films/tilting_pad.hpp>
 
 #include <algorithm>
 #include <memory>
+#include <string>
 
 namespace whirl::assembly {
 
-/// A pad with the nodes of its cells.
+/// A pad with the nodes of its cells, block by block of those at one angle.
+template <class Pad>
 struct PadCells {
-  std::shared_ptr<const elements::CarriedPad> pad;
+  static constexpr Index blocks = Pad::rows_in_time / Pad::rows_of_node;
+  std::shared_ptr<const Pad> pad;
   std::vector<Index> oil;
 
-  /// Of the cell before, the next one and the cell itself, which stands for those beyond the ends.
-  std::array<Index, 3> around(Index i) const {
+  /// Of the cells before, the next ones, the other block and the cells themselves, which stand for those
+  /// beyond the ends.
+  std::array<Index, at(2 + blocks)> around(Index i, Index block) const {
     const Index last = pad->cells() - 1;
-    return {oil[at(std::max<Index>(i - 1, 0))], oil[at(std::min(i + 1, last))], oil[at(i)]};
+    const auto node = [&](Index cell, Index of) { return oil[at(cell * blocks + of)]; };
+    std::array<Index, at(2 + blocks)> out;
+    out[0] = node(std::max<Index>(i - 1, 0), block);
+    out[1] = node(std::min(i + 1, last), block);
+    if constexpr (blocks > 1) out[2] = node(i, 1 - block);
+    out.back() = node(i, block);
+    return out;
   }
 };
 
-/// Scalar nodes for the oil of a bearing's pads, in all steps of a deck in which one follows it; held
-/// where this one does not. Empty: it does not, and the film is that of the momentary state.
-std::vector<PadCells> add_oil_nodes(
-    Assembly& a, const model::Bearing& b,
-    const std::vector<std::shared_ptr<const elements::CarriedPad>>& pads);
+/// Scalar nodes for the oil of a bearing's pads, cells[k] of pad k with as many rows each, in all steps of
+/// a deck in which one follows it; held where this one does not. Empty: it does not, and the film is that
+/// of the momentary state.
+std::vector<std::vector<Index>> add_oil_nodes(Assembly& a, const model::Bearing& b,
+                                              const std::vector<Index>& cells, int rows);
+
+template <class Pad>
+std::vector<PadCells<Pad>> add_oil_of(Assembly& a, const model::Bearing& b,
+                                      const std::vector<std::shared_ptr<const Pad>>& pads) {
+  std::vector<Index> cells;
+  for (const auto& pad : pads)
+    cells.push_back(pad->cells() * PadCells<Pad>::blocks);
+  const auto nodes = add_oil_nodes(a, b, cells, Pad::rows_of_node);
+  std::vector<PadCells<Pad>> out;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    out.push_back({pads[k], nodes[k]});
+  return out;
+}
+
+/// "40 x 6 cells", of all pads.
+template <class Pad>
+std::string grid_text(const std::vector<PadCells<Pad>>& pads) {
+  Index columns = 0;
+  for (const PadCells<Pad>& p : pads)
+    columns += p.pad->cells();
+  return std::to_string(columns) + " x " + std::to_string(Pad::rows_in_time) + " cells";
+}
+
+/// Their unknowns, in the order of CellsOnNodes::balanced.
+template <class Pad>
+std::vector<Index> oil_unknowns(const std::vector<PadCells<Pad>>& pads) {
+  std::vector<Index> out;
+  for (const PadCells<Pad>& p : pads)
+    for (const Index node : p.oil)
+      for (Index row = 0; row < Pad::rows_of_node; ++row)
+        out.push_back(6 * node + row);
+  return out;
+}
+
+/// The cells of pad k of a film on a grid along the axis too: six rows, of a fourth of the columns of
+/// statics. @pre film.grid.
+std::shared_ptr<const elements::CarriedGrid> grid_in_time(const elements::FiniteJournal& film,
+                                                          std::size_t k);
 
 /// The cells of a bearing with the nodes they stand between.
 template <class Kernel>
@@ -57,17 +105,20 @@ class CellsOnNodes {
   std::vector<double> balanced(const NodeAt& node) const {
     std::vector<double> out;
     for (std::size_t k = 0; k < size(); ++k) {
-      std::array<double, 1> q{nan};
+      decltype(kernels_[k].full(states(k, node))) q;
+      q.fill(nan);
       kernels_[k].relax(states(k, node), {}, q);
-      out.push_back(q[0]);
+      out.insert(out.end(), q.begin(), q.end());
     }
     return out;
   }
   /// What they are with all cells full.
   std::vector<double> full(const NodeAt& node) const {
     std::vector<double> out;
-    for (std::size_t k = 0; k < size(); ++k)
-      out.push_back(kernels_[k].full(states(k, node)));
+    for (std::size_t k = 0; k < size(); ++k) {
+      const auto q = kernels_[k].full(states(k, node));
+      out.insert(out.end(), q.begin(), q.end());
+    }
     return out;
   }
   typename Kernel::Nodes states(std::size_t k, const NodeAt& node) const {

@@ -367,7 +367,7 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
       a, b, law.flow, law.oil, made->pads(), [made](const NodeAt& at) { return made->films(at); },
       films_on));
   const std::shared_ptr<const Ring> ring = made;
-  if (!law.flow.follows_oil(law.rows) ||
+  if (!law.flow.follows_oil() ||
       !add_pad_cells<Pressed, Offsets>(a, b, n, ring->all_pads(), ring->unknowns()))
     add_momentary_pads(a, b, n, ring);
   TiltingPads pads;

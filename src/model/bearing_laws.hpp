@@ -107,9 +107,9 @@ struct FilmFlow {
   enum class Cavitation { reynolds, mass_conserving } cavitation = Cavitation::reynolds;
   std::optional<FilmHeat> heat;  ///< nothing: one viscosity everywhere
   bool conserves_mass() const { return cavitation == Cavitation::mass_conserving; }
-  /// The oil of ruptured film is an unknown of a motion at large: of profiles along the axis (rows 0) of
-  /// one viscosity. Else the film is that of the momentary state.
-  bool follows_oil(int rows) const { return conserves_mass() && rows == 0 && !heat; }
+  /// The oil of ruptured film is an unknown of a motion at large: of films of one viscosity. Else the
+  /// film is that of the momentary state.
+  bool follows_oil() const { return conserves_mass() && !heat; }
 };
 
 /// Plain journal bearing by the short-bearing theory (pi film).

@@ -3,6 +3,7 @@
 #include <analysis/transient/linear_motion.hpp>
 #include <analysis/transient/transient.hpp>
 #include <core/interrupt.hpp>
+#include <core/messages.hpp>
 #include <results/changing_loads.hpp>
 #include <results/held.hpp>
 #include <results/speed_level.hpp>
@@ -178,7 +179,7 @@ bool fill_film(const assembly::CarriedOil& oil, const assembly::NodeAt& node, Ve
   else
     found.content = oil.full(node);
   for (std::size_t k = 0; k < found.content.size(); ++k)
-    q[6 * oil.unknowns[k]] = found.content[k];
+    q[oil.unknowns[k]] = found.content[k];
   return balanced;
 }
 
@@ -192,7 +193,7 @@ void fill_films(run::Job& job, const model::Step& step, run::StepState& start) {
   const auto node = [&w](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
   for (const assembly::CarriedOil& oil : job.built.carried_oil) {
     if (std::any_of(oil.unknowns.begin(), oil.unknowns.end(),
-                    [&s](Index n) { return s.q[6 * n] != 0.0; }))
+                    [&s](Index k) { return s.q[k] != 0.0; }))
       continue;
     if (fill_film(oil, node, s.q)) continue;
     results::warn_of_step(
@@ -201,6 +202,25 @@ void fill_films(run::Job& job, const model::Step& step, run::StepState& start) {
                     "begins full, and the motion with what that does to it",
                     oil.bearing));
   }
+}
+
+/// Films on a grid along the axis too: which cells follow their oil, and how far these stand from statics
+/// where the step begins. One line a bearing.
+std::vector<std::string> describe_followed_oil(const run::Job& job, const run::StepState& start) {
+  std::vector<std::string> out;
+  const system::State& s = start.state;
+  system::Workspace w = job.system().make_workspace();
+  if (!job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a)) return out;
+  const auto node = [&w](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
+  for (const assembly::CarriedOil& oil : job.built.carried_oil) {
+    if (oil.grid.empty()) continue;
+    out.push_back(fmt::format("{}: oil followed in {}", oil.bearing, oil.grid));
+    const double off = oil.off_statics(node);
+    if (std::isfinite(off))
+      out.back() += fmt::format(
+          ", whose force at rest is within {:.1g} of that of statics where the step begins", off);
+  }
+  return out;
 }
 
 }  // namespace
@@ -351,21 +371,20 @@ void warn_of_pairs(run::Job& job, const model::Step& step, const run::StepState&
   }
 }
 
-/// Oil of films on a grid along the axis, and of hot ones, takes no time where these have ruptured.
+/// Oil of hot films takes no time where these have ruptured.
 void warn_of_momentary_oil(run::Job& job, const model::Step& step) {
   const auto momentary = [](const auto& law) {
-    return law.flow.conserves_mass() && !law.flow.follows_oil(law.rows);
+    return law.flow.conserves_mass() && !law.flow.follows_oil();
   };
   for (const model::Bearing& b : job.model.bearings) {
     const auto* journal = std::get_if<model::FiniteJournal>(&b.law);
     const auto* pads = std::get_if<model::TiltingPadJournal>(&b.law);
     if (!(journal && momentary(*journal)) && !(pads && momentary(*pads))) continue;
-    const bool hot = journal ? journal->flow.heat.has_value() : pads->flow.heat.has_value();
     results::warn_of_step(
         job, step,
-        fmt::format("bearing '{}': {} the oil of ruptured film is not followed: it comes to the "
-                    "next film in no time, and the film is that of the momentary state",
-                    b.name, hot ? "with 'heat'" : "on a grid along the axis"));
+        fmt::format("bearing '{}': with 'heat' the oil of ruptured film is not followed: it comes "
+                    "to the next film in no time, and the film is that of the momentary state",
+                    b.name));
   }
 }
 
@@ -405,6 +424,7 @@ class TransientRun {
   void write(const run::Checkpoint& c) const;
   analysis::TransientResult integrate(run::ProgressLine& line);
   void summarize(const analysis::TransientResult& r, const RunTime& time) const;
+  void say_followed_oil(io::ReportSection& section) const;
   io::ReportSection section_of(const analysis::TransientResult& r) const;
   [[noreturn]] void say_failure(const analysis::TransientResult& r) const;
 
@@ -416,6 +436,7 @@ class TransientRun {
   const std::string deck_;  ///< what the motion depends on
   std::optional<run::Checkpoint> resumed_, kept_;
   run::StepState start_;
+  const std::vector<std::string> oil_;  ///< what is said of films whose oil is followed
   std::unique_ptr<system::SystemProblem> problem_;
   double t_begin_;
   analysis::TransientOptions options_;
@@ -435,6 +456,7 @@ TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::
       resumed_(resumed_from(job, checkpoint_path_)),
       start_(resumed_ ? run::StepState{resumed_->state, resumed_->speed, {}}
                       : transient_start(job, step, law)),
+      oil_(describe_followed_oil(job, start_)),
       problem_(transient_problem(job, law, start_)),
       t_begin_(resumed_ ? resumed_->t_begin : start_.state.t),
       options_(transient_options(job, law, t_begin_)) {
@@ -594,6 +616,14 @@ io::ReportSection TransientRun::section_of(const analysis::TransientResult& r) c
   return section;
 }
 
+void TransientRun::say_followed_oil(io::ReportSection& section) const {
+  for (const std::string& text : oil_) {
+    job_.summary["steps"][step_.name]["oil"].push(text);
+    if (!job_.options.quiet) say(fmt::format("  {}: {}\n", step_.name, text));
+    section.text += " " + text + ".";
+  }
+}
+
 void TransientRun::say_failure(const analysis::TransientResult& r) const {
   const std::string limits = run::supports_at_their_limit(job_, r.end);
   const std::string hint =
@@ -637,6 +667,7 @@ void TransientRun::execute() {
   line.done(headline);
   if (r.reason != analysis::StopReason::failed)
     results::report_kept_films(job_, step_.name, r.end, law_.linear);
+  say_followed_oil(section);
   results::say_held(job_, step_, results::held_in_step(job_, step_), section);
   for (const auto& output : outputs_)
     output->report(end);

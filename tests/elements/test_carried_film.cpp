@@ -3,7 +3,7 @@
 #include <la/dense.hpp>
 #include "conformance.hpp"
 #include <core/dual.hpp>
-#include <elements/films/carried_film.hpp>
+#include <elements/films/pad_cell.hpp>
 #include <random>
 
 namespace carried_film_tests {
@@ -58,7 +58,7 @@ FilmForce in_balance(const FiniteJournal& film, const Vec2& r, double spin) {
       const Vec2 push(x.push[0], x.push[1]);
       f.F -= push;
       f.T += pad.lever().dot(push) + x.drag;
-      f.pump += pad.pump(i, x.fed, FilmLaw<FiniteJournal>::point(still(r, spin)).w, spin);
+      f.pump += pad.pump(i, x.fed, FilmLaw<FiniteJournal>::point(still(r, spin)));
       EXPECT_NEAR(x.outflow, 0.0, 1e-6 * std::abs(spin) * c);
     }
   }

@@ -3,6 +3,8 @@
 #include <core/error.hpp>
 #include <elements/films/finite_journal.hpp>
 
+namespace grid_film_tests {
+
 using namespace whirl;
 using namespace whirl::test;
 using namespace whirl::elements;
@@ -471,3 +473,5 @@ TEST(GridFilm, RecessesThatCannotBeAreRefused) {
   EXPECT_THROW(make({0.0, 0.4, 1.0, 1.0, 1.5, false}), Error);
   EXPECT_NO_THROW(make({0.0, 0.4, 1.0, 1.0, 0.97, false}));
 }
+
+}  // namespace grid_film_tests

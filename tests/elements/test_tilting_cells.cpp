@@ -25,6 +25,10 @@ TiltingPad lower_pad(int points, double supply = 0.0, double preload = 0.3, doub
   return pad;
 }
 
+std::shared_ptr<const CarriedPad> cells_of(const TiltingPad& pad) {
+  return std::make_shared<const CarriedPad>(pad.film, 0);
+}
+
 LateralMotion still(const Vec2& r) {
   LateralMotion m;
   m.r = r;
@@ -100,7 +104,7 @@ TEST(TiltingCells, EquilibriumOfTheMomentaryState) {
       for (const double down : {0.0, 0.3, 0.6})
         for (const int fine : {0, 1}) {
           const TiltingPad pad = lower_pad(fine ? 56 : 14, supply, 0.3, offset);
-          const PadAtRest rest(pad);
+          const PadAtRest rest(pad, cells_of(pad));
           const LateralMotion m = still(Vec2(0.1 * c, -down * c));
           const Vec2 q = rest.settled(m);
           const Vec2 F = rest.force(pad.seen(m, q, Vec2::Zero()).r, Omega);
@@ -122,7 +126,7 @@ TEST(TiltingCells, EquilibriumOfTheMomentaryState) {
 TEST(TiltingCells, PivotGives) {
   TiltingPad pad = lower_pad(14);
   pad.pivot_stiffness = 1e8;
-  const PadAtRest rest(pad);
+  const PadAtRest rest(pad, cells_of(pad));
   const LateralMotion m = still(Vec2(0.0, -0.5 * c));
   const Vec2 q = rest.settled(m);
   const Vec2 F = rest.force(pad.seen(m, q, Vec2::Zero()).r, Omega);
@@ -134,7 +138,7 @@ TEST(TiltingCells, PivotGives) {
 // there is none, and a cell that touches anywhere gives no force.
 TEST(TiltingCells, WherePadsAreInBalance) {
   const TiltingPad pad = lower_pad(14);
-  const PadAtRest rest(pad);
+  const PadAtRest rest(pad, cells_of(pad));
   const LateralMotion m = still(Vec2(0.1 * c, 0.5 * c));
   const Vec2 carries = rest.settled(m), left = rest.settled(m, Vec2(-0.9 * c / pad.arm, 0.0));
   for (const Vec2& q : {carries, left}) {
@@ -212,7 +216,7 @@ TEST(TiltingCells, FullFilmIsThatOfReynolds) {
 
 namespace {
 
-ConformanceOptions moving(const PadAtRest& rest, int pad_unknowns, double filled) {
+ConformanceOptions moving(const PadAtRest<>& rest, int pad_unknowns, double filled) {
   ConformanceOptions o = film_options(c, Omega, 5e-3);
   o.gravity.setZero();  // it does not act on scalars
   o.tangent_tolerance = 1e-7;
@@ -251,14 +255,14 @@ TEST(TiltingCells, ConformToTheContractOfKernels) {
   pad.pivot_damping = 3e3;
   for (const double density : {0.0, 900.0}) {
     pad.film.turbulent_density = density;
-    const auto rest = std::make_shared<const PadAtRest>(pad);
+    const auto rest = std::make_shared<const PadAtRest<>>(pad, cells_of(pad));
     for (const double filled : {0.8, 1.2}) {
       const std::array<double, 2> none{0.0, 0.0}, off{1e-6, 2e-6};
       const auto rigid = moving(*rest, 1, filled), pressed = moving(*rest, 2, filled);
-      check_kernel(TiltingCell<false, false>::of(rest, 5, none), rigid);
-      check_kernel(TiltingCell<false, true>::of(rest, 5, off), rigid);
-      check_kernel(TiltingCell<true, false>::of(rest, 5, none), pressed);
-      check_kernel(TiltingCell<true, true>::of(rest, 5, off), pressed);
+      check_kernel(TiltingCell<CarriedPad, false, false>::of(rest, 5, none), rigid);
+      check_kernel(TiltingCell<CarriedPad, false, true>::of(rest, 5, off), rigid);
+      check_kernel(TiltingCell<CarriedPad, true, false>::of(rest, 5, none), pressed);
+      check_kernel(TiltingCell<CarriedPad, true, true>::of(rest, 5, off), pressed);
     }
   }
 }
@@ -269,13 +273,13 @@ TEST(TiltingCells, MountsConformToTheContractOfKernels) {
   pad.mass = 0.3;
   pad.pivot_stiffness = 2e8;
   pad.pivot_damping = 3e3;
-  const auto rest = std::make_shared<const PadAtRest>(pad);
+  const auto rest = std::make_shared<const PadAtRest<>>(pad, cells_of(pad));
   ConformanceOptions o;
   o.gravity.setZero();
-  check_kernel(PadMount<false, false>{rest}, o);
-  check_kernel(PadMount<false, true>{rest, {1e-6, 2e-6}}, o);
-  check_kernel(PadMount<true, false>{rest}, o);
-  check_kernel(PadMount<true, true>{rest, {1e-6, 2e-6}}, o);
+  check_kernel(PadMount<CarriedPad, false, false>{rest}, o);
+  check_kernel(PadMount<CarriedPad, false, true>{rest, {1e-6, 2e-6}}, o);
+  check_kernel(PadMount<CarriedPad, true, false>{rest}, o);
+  check_kernel(PadMount<CarriedPad, true, true>{rest, {1e-6, 2e-6}}, o);
 }
 
 }  // namespace tilting_cells_tests
