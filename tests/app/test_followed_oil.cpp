@@ -15,7 +15,8 @@ using whirl::test::DeckRun;
 constexpr double clearance = 80e-6;
 
 /// A disk between two split bearings at 3000 rpm. more: keys of the bearings.
-std::string rotor(const std::string& steps, const std::string& more = {}) {
+std::string rotor(const std::string& steps, const std::string& more = {},
+                  const std::string& shape = "shape = \"two_grooves\"") {
   const auto bearing = [&](const char* name, const char* at) {
     return fmt::format(R"([[bearing]]
 name = "{}"
@@ -25,11 +26,11 @@ diameter = "80 mm"
 length = "40 mm"
 clearance = "80 um"
 viscosity = "20 mPa.s"
-shape = "two_grooves"
+{}
 cavitation = "mass_conserving"
 {}
 )",
-                       name, at, more);
+                       name, at, shape, more);
   };
   return whirl::test::disk_between(bearing("DE", "left:start") + bearing("NDE", "right:end"),
                                    steps);
@@ -87,6 +88,46 @@ TEST(FollowedOil, StepsGoOn) {
   ASSERT_EQ(with.rows.size(), without.rows.size());
   for (std::size_t k = 0; k < with.rows.size(); ++k)
     EXPECT_NEAR(with.rows[k][f], without.rows[k][f], 1e-6 * without.rows[k][f]);
+}
+
+namespace {
+
+const std::string dam = R"(shape = "pressure_dam"
+dam_arc = "125 deg"
+dam_depth = "160 um"
+dam_width = "29 mm"
+relief_width = "10 mm")";
+
+}  // namespace
+
+// A pressure dam, whose film is on a grid along the axis: as above, on the cells that the step says.
+TEST(FollowedGrid, SettlesInTheEquilibrium) {
+  const std::string coarse = "grid = 96";
+  const DeckRun still(rotor(moves("start = \"static\"", "0.01 s"), coarse, dam));
+  EXPECT_TRUE(still.says("oil followed in 24 x 6 cells")) << still.log;
+  const Ends stays = ends_of(still);
+  EXPECT_LT(between(stays.y0, stays.z0, stays.y1, stays.z1), 1e-6);
+  const DeckRun let_go(rotor(at_rest + moves("from = \"st\"", "0.03 s"), coarse, dam));
+  const Ends comes = ends_of(let_go);
+  EXPECT_GT(between(comes.y0, comes.z0, stays.y0, stays.z0), 1e-4);
+  EXPECT_LT(between(comes.y0, comes.z0, stays.y0, stays.z0), 0.01);
+  EXPECT_LT(between(comes.y1, comes.z1, stays.y0, stays.z0), 2e-4);
+  const whirl::io::Value energy = let_go.summary("t").at("energy");
+  EXPECT_LT(std::abs(energy.at("largest defect [J]").number()),
+            1e-6 * energy.at("supplied [J]").number());
+}
+
+// Tilting pads on such a grid begin in balance and stay there.
+TEST(FollowedGrid, PadsThatTiltStay) {
+  std::string deck = rotor(moves("start = \"static\"", "2 ms"), "grid = 96\naxial_grid = 4",
+                           "pads = 4\nfirst_pivot = \"-135 deg\"\narc = \"72 deg\"\n"
+                           "preload = 0.3\nthickness = \"15 mm\"");
+  for (std::size_t at = 0; (at = deck.find("\"journal\"", at)) != std::string::npos;)
+    deck.replace(at, 9, "\"tilting_pad\"");
+  const DeckRun d(deck);
+  EXPECT_TRUE(d.says("oil followed in 24 x 6 cells")) << d.log;
+  const Ends stays = ends_of(d);
+  EXPECT_LT(between(stays.y0, stays.z0, stays.y1, stays.z1), 1e-6);
 }
 
 }  // namespace followed_oil_tests

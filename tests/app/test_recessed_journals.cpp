@@ -372,8 +372,9 @@ TEST(RecessedJournals, HeatOfAPressureDam) {
   EXPECT_GT(tracked[1], 40);
 }
 
-// Oil that ruptured film carries on: what comes in leaves, and small motions in time, 1e-3 of the
-// clearance, are the response.
+// Oil that ruptured film carries on: what comes in leaves. In time it is followed: small motions, 1e-3 of
+// the clearance, are 5 % less than the response, whose oil takes no time from where film ruptures to where
+// it forms (6 % on 90 columns for 60, where a supply pressure keeps the film full 1 %).
 TEST(RecessedJournals, APressureDamThatConservesMass) {
   const std::string conserving = film + dam + "cavitation = \"mass_conserving\"\n";
   const DeckRun d(rotor(conserving, R"([[unbalance]]
@@ -406,7 +407,7 @@ start = "unbalance_response"
 duration = "0.03 s"
 )"));
   ASSERT_EQ(d.exit, 0) << d.log;
-  EXPECT_TRUE(d.says("the oil of ruptured film is not followed")) << d.log;
+  EXPECT_TRUE(d.says("bearing 'DE': oil followed in 60 x 6 cells")) << d.log;
   const Columns c = d.csv("films_films.csv");
   for (const std::vector<double>& row : c.rows) {
     if (row.at(c.column("pad [-]")) == 0) continue;  // the bearing
@@ -423,7 +424,7 @@ duration = "0.03 s"
     high = std::max(high, row[y]);
   }
   const double amplitude = response.rows.at(0).at(response.column("p y amplitude [m]"));
-  EXPECT_NEAR(0.5 * (high - low), amplitude, 1e-2 * amplitude);
+  EXPECT_NEAR(0.5 * (high - low), 0.95 * amplitude, 2e-2 * amplitude);
   const Film own = film_of(conserving), reynolds = film_of(film + dam);
   EXPECT_GT(apart(own, reynolds), 1e-3);
   EXPECT_LT(own.grid, 2e-2);
