@@ -26,9 +26,9 @@ namespace whirl::time {
 /// What one unit of error is, by kind of unknown. The scale of a kind is its running response: half
 /// the range its largest unknown has swept since start (for spin_angle always spin_angle_scale,
 /// never the number of turns; for internal unknowns each its own). Floors hold while nothing has
-/// moved, among them 1e-6 of the size of the coordinates themselves (a sag); the displacement and
-/// tilt scales also floor each other (cross_floor * length), so that the round-off in a coordinate
-/// the motion never reaches asks for no steps.
+/// moved, among them 1e-6 of the size of the coordinates themselves (a sag, for tilts over the length
+/// too); the displacement and tilt scales also floor each other (cross_floor * length), so that the
+/// round-off in a coordinate the motion never reaches asks for no steps.
 struct Scales {
   double spin_angle = 1.0;            ///< rad
   double displacement = 0.0;          ///< expected response, m; 0: unknown, found while running

@@ -96,8 +96,11 @@ void ResponseScale::begin_step(CRef dq) {
     twist_scale_ = std::max(twist, twist_floor_);
     share = std::max(share, std::min(shaken_by_twist * twist, most_shaken));
   }
-  u = std::max({u, o.displacement, o.floor_displacement, share * size_[of(Kind::displacement)]});
+  const double sag = size_[of(Kind::displacement)];
+  u = std::max({u, o.displacement, o.floor_displacement, share * sag});
   g = std::max({g, o.tilt, o.floor_tilt, share * size_[of(Kind::tilt)]});
+  // a sag tilts a line; what symmetry keeps level is so to the rounding of forces
+  g = std::max(g, offset_share_ * sag / o.length);
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
   g = std::max(g, o.cross_floor * u0 / o.length);

@@ -2,12 +2,32 @@
 // changes, failures.
 #include "toys.hpp"
 #include <core/error.hpp>
+#include <time/response_scale.hpp>
 #include <time/step_control.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
 
 namespace whirl::time::test {
 namespace {
+
+// A rotor that moves by little beside where it stands, and that symmetry keeps level: its tilts are the
+// rounding of forces that hold where it stands, and are asked for no finer than that.
+TEST(Control, TiltsOfALevelRotorAreNotFollowed) {
+  const Kind kinds[] = {Kind::displacement, Kind::tilt};
+  Scales o;
+  o.length = 2.0;
+  ResponseScale scale;
+  scale.resize(kinds, o);
+  const auto at = [](double u, double g) { return VecX((VecX(2) << u, g).finished()); };
+  scale.reset(at(6e-5, 0.0));
+  scale.observe(at(6e-5 + 4e-8, 1e-19));
+  scale.begin_step(at(1e-9, 1e-19));
+  EXPECT_NEAR(scale.scale(Kind::displacement), 2e-8, 1e-12);
+  EXPECT_NEAR(scale.scale(Kind::tilt), 1e-6 * 6e-5 / 2.0, 1e-13);
+  scale.observe(at(6e-5, 2e-9));  // one that tilts is right to its tilts
+  scale.begin_step(at(1e-9, 1e-12));
+  EXPECT_NEAR(scale.scale(Kind::tilt), 1e-9, 1e-15);
+}
 
 constexpr const char* names[] = {"radau5", "gauss4", "gauss6", "generalized_alpha"};
 
