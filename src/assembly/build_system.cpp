@@ -14,10 +14,11 @@ void Assembly::error(const char* code, std::string message, std::string hint,
   errors.push_back(std::move(d));
 }
 
-Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step) {
+Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step,
+                   FilmOil oil) {
   WHIRL_EXPECTS(mesh.lines.size() == model.shafts.size());
   WHIRL_EXPECTS(mesh.bearings.size() == model.bearings.size());
-  Assembly a{model, mesh, step, {}, {}, {}};
+  Assembly a{model, mesh, step, oil, {}, {}, {}};
   // Nodes in the order of the mesh: indices agree everywhere.
   for (const meshes::Line& line : mesh.lines)
     a.builder.add_line(line.name);

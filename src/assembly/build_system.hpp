@@ -268,12 +268,17 @@ struct Built {
 /// Steps with one key have the same system: the same drives act, and the same free motions are held.
 std::string system_key(const model::Model& model, const model::Step& step);
 
+/// Whose films that conserve mass have oil of their own: those that a step follows, or none, all being of
+/// the momentary state.
+enum class FilmOil { followed, momentary };
+
 /// step: name of the step whose drives act (drives without a step always act) and that decides which
-/// free motions must be held; "" = only drives without a step, and the needs of all steps.
+/// free motions must be held; "" = only drives without a step, and the needs of all steps. Unknowns are the
+/// same with and without oil.
 /// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
 /// impossible bodies.
 /// @pre mesh = make_mesh(model).
 Built build_system(const model::Model& model, const meshes::Mesh& mesh,
-                   const std::string& step = {});
+                   const std::string& step = {}, FilmOil oil = FilmOil::followed);
 
 }  // namespace whirl::assembly

@@ -8,6 +8,7 @@ struct Assembly {
   const model::Model& model;
   const meshes::Mesh& mesh;
   const std::string& step;
+  FilmOil oil;
   system::Builder builder;
   Built built;
   std::vector<Diagnostic> errors;

@@ -80,7 +80,7 @@ std::vector<std::vector<Index>> add_oil_nodes(Assembly& a, const model::Bearing&
   if (std::none_of(steps.begin(), steps.end(), moves_at_large)) return out;
   const auto now = std::find_if(steps.begin(), steps.end(),
                                 [&](const model::Step& s) { return s.name == a.step; });
-  const bool followed = now != steps.end() && moves_at_large(*now);
+  const bool followed = a.oil == FilmOil::followed && now != steps.end() && moves_at_large(*now);
   const Index line = a.builder.add_line(fmt::format("oil of {}", name_of(b)));
   for (std::size_t k = 0; k < cells.size(); ++k) {
     out.emplace_back();

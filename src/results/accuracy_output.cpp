@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::results {
 
@@ -127,7 +128,8 @@ Index modes_below(const system::System& system, const la::MCK& conservative, dou
 }
 
 /// The rotation at the end of the run, `speed` that of the reference.
-analysis::SteadyRotation rotation_at(const TransientEnd& end, double speed) {
+analysis::SteadyRotation rotation_at(const TransientEnd& end, const assembly::Built& built,
+                                     double speed) {
   const run::Job& job = end.job;
   const system::State& state = end.result.end;
   analysis::SteadyRotation running;
@@ -138,9 +140,9 @@ analysis::SteadyRotation rotation_at(const TransientEnd& end, double speed) {
                             : speed != 0.0                ? spin / speed
                                                           : job.model.shafts[l].speed_ratio);
   }
-  running.ratio.resize(at(job.system().lines()), 0.0);
-  running.axially_free = job.built.axially_free;
-  for (const assembly::MagneticControl& c : job.built.magnetic_controls)
+  running.ratio.resize(at(built.system.lines()), 0.0);
+  running.axially_free = built.axially_free;
+  for (const assembly::MagneticControl& c : built.magnetic_controls)
     running.control_bandwidth = std::max(running.control_bandwidth, c.bandwidth);
   running.time = state.t;
   running.hysteretic = false;  // a motion in time has its stand-in
@@ -181,13 +183,26 @@ struct ContainedModes {
   std::vector<std::string> left_out;  ///< shafts whose elements are not judged
 };
 
+bool follows_oil(const TransientEnd& end) { return !end.job.built.carried_oil.empty(); }
+constexpr const char* films_of_modes = "of the momentary state, as in linear steps";
+
+/// The system without the oil that a run has followed: its cells have motions of their own, hundreds as
+/// slow as the rotor's, which die away within a turn. None: none was followed.
+std::optional<assembly::Built> with_momentary_films(const TransientEnd& end) {
+  const run::Job& job = end.job;
+  if (!follows_oil(end)) return std::nullopt;
+  return assembly::build_system(job.model, job.mesh, end.step.name, assembly::FilmOil::momentary);
+}
+
 /// Modes the motion can contain at the end of the run: up to twice the largest spin, the four
 /// lowest in any case, and what grows. near: the equilibrium is sought from there; null: from the
 /// reference configuration.
 ContainedModes modes_that_matter(const TransientEnd& end, double speed, double largest_spin,
                                  const system::State* near) {
   const run::Job& job = end.job;
-  analysis::SteadyRotation running = rotation_at(end, speed);
+  const std::optional<assembly::Built> momentary = with_momentary_films(end);
+  const assembly::Built& built = momentary ? *momentary : job.built;
+  analysis::SteadyRotation running = rotation_at(end, built, speed);
   std::vector<double> spin;
   double fastest = largest_spin;
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
@@ -196,10 +211,10 @@ ContainedModes modes_that_matter(const TransientEnd& end, double speed, double l
   }
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
-  analysis::Linearizer linear(job.system(), std::move(running), o);
+  analysis::Linearizer linear(built.system, std::move(running), o);
   if (near) linear.start_from(*near);
   std::vector<analysis::WhirlMode> modes = slow_modes(linear, speed, beside_the_spin * fastest);
-  const assembly::MeshError mesh(job.model, job.mesh, job.built);
+  const assembly::MeshError mesh(job.model, job.mesh, built);
   ContainedModes contained{{}, mesh.left_out()};
   std::vector<Contained>& out = contained.modes;
   for (analysis::WhirlMode& m : modes) {
@@ -358,6 +373,7 @@ void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& wa
     end.summary["accuracy"]["modes"] = std::string("not found at the end of the run: ") + e.what();
     return;
   }
+  if (follows_oil(end)) end.summary["accuracy"]["films in the modes"] = films_of_modes;
   judge_mesh(end, contained);
   judge_damping(end, contained.modes, speed, warnings);
 }
@@ -407,7 +423,7 @@ void AccuracyOutput::judge_damping(TransientEnd& end, const std::vector<Containe
   t.columns = {
       {"frequency", "Hz", ""},
       {"motion", "-", ""},
-      {"physical damping ratio", "-", ""},
+      {"physical damping ratio", "-", follows_oil(end) ? films_of_modes : ""},
       {"numerical damping ratio", "-", "mean over the half of the run with the shortest steps"},
       {"amplitude lost to it over the run", "-", ""}};
   for (const Contained& c : modes)

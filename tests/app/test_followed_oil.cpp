@@ -117,6 +117,31 @@ TEST(FollowedGrid, SettlesInTheEquilibrium) {
             1e-6 * energy.at("supplied [J]").number());
 }
 
+// The modes that a transient compares its steps with are those of the rotor on films of the momentary state,
+// as a modal step has them: not those of oil in its cells.
+TEST(FollowedGrid, ModesOfATransientAreThoseOfLinearSteps) {
+  for (const std::string& shape : {std::string("shape = \"two_grooves\""), dam}) {
+    const DeckRun d(rotor(moves("start = \"static\"", "1 ms") +
+                              "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"3000 rpm\"\n"
+                              "modes = 8\n",
+                          "grid = 96", shape));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const whirl::io::Value accuracy = d.summary("t").at("accuracy");
+    EXPECT_EQ(accuracy.at("films in the modes").text(),
+              "of the momentary state, as in linear steps");
+    const Columns modes = d.csv("m_modes.csv");
+    const std::size_t f = modes.column("frequency [Hz]"),
+                      damping = modes.column("damping ratio [-]");
+    ASSERT_GE(accuracy.at("modes").items().size(), 4U);
+    for (std::size_t k = 0; k < accuracy.at("modes").items().size(); ++k) {
+      const whirl::io::Value& mode = accuracy.at("modes").items()[k];
+      EXPECT_NEAR(mode.at("frequency [Hz]").number(), modes.rows.at(k)[f],
+                  1e-5 * modes.rows.at(k)[f]);
+      EXPECT_NEAR(mode.at("physical damping ratio").number(), modes.rows.at(k)[damping], 1e-5);
+    }
+  }
+}
+
 // Tilting pads on such a grid begin in balance and stay there.
 TEST(FollowedGrid, PadsThatTiltStay) {
   std::string deck = rotor(moves("start = \"static\"", "2 ms"), "grid = 96\naxial_grid = 4",
