@@ -373,8 +373,10 @@ TEST(RecessedJournals, HeatOfAPressureDam) {
 }
 
 // Oil that ruptured film carries on: what comes in leaves. In time it is followed: small motions, 1e-3 of
-// the clearance, are 5 % less than the response, whose oil takes no time from where film ruptures to where
-// it forms (6 % on 90 columns for 60, where a supply pressure keeps the film full 1 %).
+// the clearance, are 5 and 10 % less along y and z than the response, whose oil takes no time from where
+// film ruptures to where it forms. That is no error of the cells: their dynamic stiffness in the response
+// gives 4.5 and 9 % on these, 5.4 and 9 % on 120 x 24, while 3 and 2 % of a film that 30 bar keep full come
+// down to 0.6 % (CarriedGrid.OilTakesTimeBehindARupturedStretch).
 TEST(RecessedJournals, APressureDamThatConservesMass) {
   const std::string conserving = film + dam + "cavitation = \"mass_conserving\"\n";
   const DeckRun d(rotor(conserving, R"([[unbalance]]
@@ -416,15 +418,19 @@ duration = "0.03 s"
                 1e-9 * in);
   }
   const Columns response = d.csv("response_response.csv"), run = d.csv("run.csv");
-  const std::size_t y = run.column("p.y [m]");
-  double low = 1, high = -1;
-  for (const std::vector<double>& row : run.rows) {
-    if (row[0] < 0.015) continue;
-    low = std::min(low, row[y]);
-    high = std::max(high, row[y]);
-  }
-  const double amplitude = response.rows.at(0).at(response.column("p y amplitude [m]"));
-  EXPECT_NEAR(0.5 * (high - low), 0.95 * amplitude, 2e-2 * amplitude);
+  const auto share = [&](const std::string& axis) {
+    const std::size_t u = run.column("p." + axis + " [m]");
+    double low = 1, high = -1;
+    for (const std::vector<double>& row : run.rows) {
+      if (row[0] < 0.015) continue;
+      low = std::min(low, row[u]);
+      high = std::max(high, row[u]);
+    }
+    const std::size_t amplitude = response.column("p " + axis + " amplitude [m]");
+    return 0.5 * (high - low) / response.rows.at(0).at(amplitude);
+  };
+  EXPECT_NEAR(share("y"), 0.95, 2e-2);
+  EXPECT_NEAR(share("z"), 0.90, 2e-2);
   const Film own = film_of(conserving), reynolds = film_of(film + dam);
   EXPECT_GT(apart(own, reynolds), 1e-3);
   EXPECT_LT(own.grid, 2e-2);
