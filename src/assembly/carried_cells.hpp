@@ -41,6 +41,7 @@ template <class Pad>
 std::vector<PadCells<Pad>> add_oil_of(Assembly& a, const model::Bearing& b,
                                       const std::vector<std::shared_ptr<const Pad>>& pads) {
   std::vector<Index> cells;
+  cells.reserve(pads.size());
   for (const auto& pad : pads)
     cells.push_back(pad->cells() * PadCells<Pad>::blocks);
   const auto nodes = add_oil_nodes(a, b, cells, Pad::rows_of_node);

@@ -100,6 +100,7 @@ bool add_pads_with(Assembly& a, const model::Bearing& b, const meshes::BearingNo
                    const std::vector<std::shared_ptr<const elements::PadAtRest<Oil>>>& rests,
                    const std::vector<std::vector<Index>>& unknowns) {
   std::vector<std::shared_ptr<const Oil>> films;
+  films.reserve(rests.size());
   for (const auto& rest : rests)
     films.push_back(rest->oil());
   const std::vector<PadCells<Oil>> oil = add_oil_of(a, b, films);
