@@ -308,6 +308,10 @@ FilmField sample_grid(const FiniteJournal& film, std::size_t pad, const FilmPoin
     f.viscosity.push_back(film.viscosity * relative_viscosity(drive, at / arc.length));
     f.flow.push_back(film.length * film.radius * between(g.face_place, g.flow, at));
     f.wet.push_back(g.wet[column]);
+    if (!g.stream.empty()) {
+      f.stream.push_back(film.length * film.radius * between(g.face_place, g.stream, at));
+      f.from_groove.push_back(film.length * film.radius * between(g.face_place, g.from_groove, at));
+    }
     f.filled.push_back(film.length * film.radius * between(g.face_place, g.filled, at));
     f.lost.push_back(loss * between(g.face_place, g.driven, at) +
                      drag * p.slip * p.slip * between(g.face_place, g.shear, at));

@@ -26,6 +26,9 @@ struct FilmField {
   std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it
                              ///< (on a grid without mass conserved, of the next one at the start)
   std::vector<unsigned char> wet;  ///< film, not ruptured
+  /// Of a film on a grid that does not conserve mass, for its heat: GridField::stream and from_groove,
+  /// m3/s. Else empty.
+  std::vector<double> stream, from_groove;
   /// Of a film on a grid, for its heat: flow with ruptured gaps filled, m3/s; what is turned into heat
   /// from the start of the pad to here, W; the length that is no relief track times h, over the
   /// length, m, and likewise of 1/h, 1/m. Of a film that conserves mass the flow as it is, and of the

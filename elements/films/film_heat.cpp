@@ -89,12 +89,10 @@ class PadHeat {
   }
 
   /// Heat capacity of what the groove gives and of what leaves at the end, W/K.
-  double inflow() const {
-    return carried_.row(0).cwiseMax(0.0).sum() - side_.head(groove_cells_).cwiseMin(0.0).sum();
-  }
+  double inflow() const { return carried_.row(0).cwiseMax(0.0).sum() + groove_.sum(); }
   double outflow() const { return std::max(0.0, carried_.row(N_).sum()); }
   /// And of what films that form behind the first one take in at the sides.
-  double taken_in() const { return -side_.tail(N_ - groove_cells_).cwiseMin(0.0).sum(); }
+  double taken_in() const { return -side_.cwiseMin(0.0).sum(); }
   double loss() const { return heat_ + gaps_; }
   /// Of the oil that leaves at the end of the pad.
   Affine outlet() const {
@@ -131,12 +129,14 @@ class PadHeat {
   Index wall_place(Index i, Index m) const { return i * (M_ + J_) + m; }
   double width(Index j) const { return edge_[j + 1] - edge_[j]; }
   void turn_round() {
-    for (auto* x : {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope,
-                    &field_.viscosity, &field_.flow, &field_.filled, &field_.lost, &field_.gap,
-                    &field_.conducting, &field_.share, &field_.wetted})
+    for (auto* x :
+         {&field_.theta, &field_.thickness, &field_.pressure, &field_.slope, &field_.viscosity,
+          &field_.flow, &field_.stream, &field_.from_groove, &field_.filled, &field_.lost,
+          &field_.gap, &field_.conducting, &field_.share, &field_.wetted})
       std::reverse(x->begin(), x->end());
     std::reverse(field_.wet.begin(), field_.wet.end());
-    for (auto* x : {&field_.slope, &field_.flow, &field_.filled})
+    for (auto* x :
+         {&field_.slope, &field_.flow, &field_.stream, &field_.from_groove, &field_.filled})
       for (double& value : *x)
         value = -value;
   }
@@ -181,16 +181,16 @@ class PadHeat {
   }
   void add_film(Band& a);
   void add_flows(Band& a);
-  /// Of what passes a side, in layer j: driven out by the pressure, or taken in to be dragged along.
+  /// In layer j, of what is taken in to be dragged along; of what passes a side, which the pressure drives
+  /// out, or which is taken in.
+  double share_dragged(Index j) const { return edge_[j + 1] * edge_[j + 1] - edge_[j] * edge_[j]; }
   double share_beside(Index i, Index j) const {
-    const auto below = [&](double z) { return side_[i] > 0.0 ? z * z * (3.0 - 2.0 * z) : z * z; };
-    return below(edge_[j + 1]) - below(edge_[j]);
+    const auto below = [](double z) { return z * z * (3.0 - 2.0 * z); };
+    return side_[i] > 0.0 ? below(edge_[j + 1]) - below(edge_[j]) : share_dragged(j);
   }
   void empty_gaps();
   void place_fronts();
-  void find_groove_cells();
-  /// Of what a film takes in where it forms: that of the first one comes from the groove.
-  Cause taken_from(Index i) const { return i < groove_cells_ ? of_inlet : of_sides; }
+  void find_sides();
   void add_loss(Index i);
   void turn_into_heat(double loss) {
     x_.col(of_loss) *= loss / heat_;
@@ -224,10 +224,10 @@ class PadHeat {
   MatX x_;                  ///< right sides, then temperatures: a column a cause
   MatX carried_;            ///< rho c times the flow through face i in layer j, W/K
   VecX journal_, to_face_;  ///< conductance to the journal and to the pad, one a cell, W/K
-  VecX conducted_;  ///< conductance from the film's first layer into the pad, one a cell, W/K
-  VecX side_;       ///< rho c times what leaves at the sides, one a cell, W/K
-  Index groove_cells_ = 0;  ///< to where the first film has formed
-  double gaps_ = 0;         ///< loss in gaps between streams that count as full in the drag, W
+  VecX conducted_;   ///< conductance from the film's first layer into the pad, one a cell, W/K
+  VecX side_;        ///< rho c times what leaves at the sides, one a cell, W/K
+  VecX groove_;      ///< and what the first film takes in from the groove where it forms
+  double gaps_ = 0;  ///< loss in gaps between streams that count as full in the drag, W
   double heat_ = 0;
 };
 
@@ -251,12 +251,9 @@ void PadHeat::add_film(Band& a) {
 void PadHeat::empty_gaps() {
   const std::size_t n = field_.flow.size();
   std::vector<double> share(n, 1.0);
-  bool before = true;  // of the first film
   for (std::size_t i = 0; i < n; ++i) {
-    before = before && !field_.wet[i];
-    const double flow = before ? field_.filled.front() : field_.flow[i];
-    if (!(field_.filled[i] > 0.0 && flow < field_.filled[i])) continue;
-    share[i] = std::max(flow, 0.0) / field_.filled[i];
+    if (!(field_.filled[i] > 0.0 && field_.stream[i] < field_.filled[i])) continue;
+    share[i] = std::max(field_.stream[i], 0.0) / field_.filled[i];
     field_.filled[i] *= share[i];
     field_.gap[i] *= share[i];
     field_.conducting[i] *= share[i];
@@ -283,9 +280,22 @@ void PadHeat::place_fronts() {
   }
 }
 
-void PadHeat::find_groove_cells() {
-  const auto wet = std::find(field_.wet.begin(), field_.wet.end(), 1);
-  groove_cells_ = std::min<Index>(N_, wet - field_.wet.begin() + 1);
+/// What films take in where they form: that of the first one comes from the groove.
+void PadHeat::find_sides() {
+  side_.resize(N_);
+  groove_ = VecX::Zero(N_);
+  for (Index i = 0; i < N_; ++i)
+    side_[i] = carried_.row(i).sum() - carried_.row(i + 1).sum();
+  if (field_.from_groove.empty()) {
+    const auto wet = std::find(field_.wet.begin(), field_.wet.end(), 1);
+    const Index first = std::min<Index>(N_, wet - field_.wet.begin() + 1);
+    groove_.head(first) = -side_.head(first).cwiseMin(0.0);
+  } else {
+    const double capacity = s_.density * s_.specific_heat;
+    for (Index i = 0; i < N_; ++i)
+      groove_[i] = capacity * (field_.from_groove[at(i + 1)] - field_.from_groove[at(i)]);
+  }
+  side_ += groove_;
 }
 
 void PadHeat::add_flows(Band& a) {
@@ -299,17 +309,16 @@ void PadHeat::add_flows(Band& a) {
     for (Index j = 0; j < J_; ++j)
       carried_(i, j) = capacity * H * (below(edge_[j + 1]) - below(edge_[j]));
   }
-  find_groove_cells();
-  side_.resize(N_);
+  find_sides();
   for (Index i = 0; i < N_; ++i) {
-    side_[i] = carried_.row(i).sum() - carried_.row(i + 1).sum();
     double up = 0.0;
     for (Index j = 0; j < J_; ++j) {
       const Index p = place(i, j);
-      const double side = side_[i] * share_beside(i, j);
+      const double side = side_[i] * share_beside(i, j), groove = groove_[i] * share_dragged(j);
       a(p, p) += std::max(side, 0.0);
-      x_(p, taken_from(i)) -= std::min(side, 0.0);
-      up += carried_(i, j) - carried_(i + 1, j) - side;
+      x_(p, of_sides) -= std::min(side, 0.0);
+      x_(p, of_inlet) += groove;
+      up += carried_(i, j) - carried_(i + 1, j) - side + groove;
       if (j + 1 < J_) carry(a, p, place(i, j + 1), up);
       if (i + 1 < N_) carry(a, p, place(i + 1, j), carried_(i + 1, j));
     }
@@ -384,7 +393,7 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
   out.hottest = out.film_hottest = -infinity;
   const double across =
       M_ > 0 ? s_.wall_conductivity * film_.length * dx_ * static_cast<double>(M_) / wall_ : 0.0;
-  out.carried = gaps_;
+  out.carried = gaps_ - groove_.sum() * out.in;
   double mean = 0.0, lean = 0.0;
   for (Index i = 0; i < N_; ++i) {
     double film = 0.0, fluidity = 0.0;
@@ -417,7 +426,7 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
     }
     for (Index j = 0; j < J_; ++j) {
       out.carried +=
-          side_[i] * share_beside(i, j) * (side_[i] > 0.0 ? T[place(i, j)] : of[taken_from(i)]);
+          side_[i] * share_beside(i, j) * (side_[i] > 0.0 ? T[place(i, j)] : of[of_sides]);
     }
   }
   for (Index j = 0; j < J_; ++j) {

@@ -33,8 +33,9 @@
 // counts ruptured gaps as full: what is lost there beyond the streams warms oil that comes from the sides
 // and leaves again (part of heat, carried and to_oil, of no temperature here).
 // A film on a grid (grid_film.hpp): flow, loss and what is conducted across are the means over the length
-// of what it finds there; recesses share one temperature with the lands beside them, and the oil of a
-// relief track takes no heat.
+// of what it finds there; a film that forms in the way between two nodes takes in its share of that, so
+// that nothing jumps as its front passes a node; recesses share one temperature with the lands beside
+// them, and the oil of a relief track takes no heat.
 //
 // The oil of the film's equation has at each place the viscosity eta_e with which shear is right,
 //   1/eta_e = int dzeta/eta(T).

@@ -793,10 +793,13 @@ double GridPad::Solver::lacking_past(std::size_t l, std::size_t r) const {
 /// Past the faces of a row, and what tells how long its films are.
 struct GridPad::Solver::RowFlow {
   using Faces = std::array<double, most_columns + 1>;
-  Faces flow;                         ///< NaN: no film
+  Faces flow;                 ///< NaN: no film
+  Faces stream, from_groove;  ///< as of GridField
+  Faces covered;              ///< of the way between the nodes beside it, where a film ends there
   Faces pressure, resistance, width;  ///< mean and int 1/(a h^3) between the nodes beside it, rad
   std::array<bool, most_columns + 1> in_track;
   double least;  ///< of what is dragged
+  double first;  ///< of what is dragged, that at the groove
 };
 
 void GridPad::Solver::find_row(std::size_t j, std::size_t band, bool at_side,
@@ -816,9 +819,11 @@ void GridPad::Solver::find_row(std::size_t j, std::size_t band, bool at_side,
     row.pressure[f] = 0.5 * (pressure(l) + pressure(r));
     row.resistance[f] = x.r;
     row.width[f] = half(left_of(own)) + half(right_of(own));
+    row.covered[f] = (wet(l) ? reach_[l] : 1.0) * (wet(r) ? reach_[r] : 1.0);
     row.flow[f] = nan;
-    if (row.in_track[f]) continue;
     const double dragged = S * (in_.clearance * circle + x.s / x.r);
+    if (f == (forward() ? 0 : n_)) row.first = dragged;
+    if (row.in_track[f]) continue;
     const double pushed = at_side ? 0.0 : (pressure(r) - pressure(l)) / x.r;
     if (std::abs(dragged) < std::abs(row.least)) row.least = dragged;
     if (row.pressure[f] > 0.0)
@@ -843,11 +848,14 @@ void GridPad::Solver::join_films(RowFlow& row) const {
   const auto film = [&](std::size_t step) {
     return step <= n_ && !std::isnan(row.flow[at_face(step)]);
   };
-  double carried = row.least;
+  double carried = row.least, stream = pad_.round_ ? row.least : row.first, given = 0.0;
   bool first = true;
   for (std::size_t step = 0; step <= n_;) {
     if (!film(step)) {
-      row.flow[at_face(step++)] = carried;
+      const std::size_t f = at_face(step++);
+      row.flow[f] = carried;
+      row.stream[f] = stream;
+      row.from_groove[f] = given;
       continue;
     }
     double pressure = 0.0, resistance = 0.0, width = 0.0;
@@ -860,10 +868,20 @@ void GridPad::Solver::join_films(RowFlow& row) const {
     }
     const bool forms = step > 0 && !pad_.round_ && !row.in_track[at_face(step - 1)];
     const double taken = forms ? taken_in(pressure, resistance, width) : 1.0;
+    const auto joined = [&](double comes, double flow) {
+      return (forward ? comes < flow : comes > flow) ? std::lerp(comes, flow, taken) : flow;
+    };
+    const double begins = row.flow[at_face(step)], more = joined(stream, begins) - stream;
     for (std::size_t k = step; k < end; ++k) {
-      double& flow = row.flow[at_face(k)];
-      if (forward ? carried < flow : carried > flow) flow = std::lerp(carried, flow, taken);
+      const std::size_t f = at_face(k);
+      const double covered = forms && k == step ? row.covered[f] : 1.0;
+      row.stream[f] = std::lerp(stream, joined(stream, row.flow[f]), covered);
+      row.from_groove[f] =
+          given + (first && (forward ? more > 0.0 : more < 0.0) ? covered * more : 0.0);
+      row.flow[f] = joined(carried, row.flow[f]);
     }
+    stream = row.stream[at_face(end - 1)];
+    given = row.from_groove[at_face(end - 1)];
     // what the first film begins with comes from the groove
     for (std::size_t k = 0; first && k < step; ++k)
       row.flow[at_face(k)] = row.flow[at_face(step)];
@@ -883,15 +901,19 @@ void GridPad::Solver::add_flow(GridField& out) const {
     if (open_[l] && !open_[k]) out.into_open += q;
     if (open_[k] && !open_[l]) out.into_open -= q;
   });
-  out.flow.assign(n_ + 1, 0.0);
+  for (auto* x : {&out.flow, &out.stream, &out.from_groove})
+    x->assign(n_ + 1, 0.0);
   for (std::size_t f = 0; f <= n_; ++f)
     out.face_place.push_back(f < n_ ? pad_.cells_[f].from : pad_.cells_[n_ - 1].to);
   RowFlow row;
   const auto add_row = [&](std::size_t j, std::size_t band, double share, bool at_side) {
     find_row(j, band, at_side, out.face_place, row);
     join_films(row);
-    for (std::size_t f = 0; f <= n_; ++f)
+    for (std::size_t f = 0; f <= n_; ++f) {
       out.flow[f] += share * row.flow[f];
+      out.stream[f] += share * row.stream[f];
+      out.from_groove[f] += share * row.from_groove[f];
+    }
   };
   for (std::size_t j = 0; j < m_; ++j)
     for (const Piece& piece : pieces(j))

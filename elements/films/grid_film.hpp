@@ -84,7 +84,11 @@ struct GridField {
   std::vector<double> thickness;         ///< h at the middle, or beside an open recess there
   std::vector<unsigned char> wet;        ///< film somewhere along the axis
   std::vector<double> face_place, flow;  ///< of the faces between them: mean of q over the length
-  /// For the heat balance, at the faces: flow with ruptured gaps filled; from the start of the pad,
+  /// For the heat balance, at the faces, of films that do not conserve mass (else empty): flow of the oil
+  /// there is, before the first film what the groove lets go; what first films have taken in from the
+  /// groove where they form, summed up in the sense of rotation.
+  std::vector<double> stream, from_groove;
+  /// And of all films: flow with ruptured gaps filled; from the start of the pad,
   /// shear (of GridLoad::shear) and what the pressure's flows turn into heat. At the columns: int h
   /// and int 1/h over the part of the length that is no open recess.
   std::vector<double> filled, shear, driven, gap, conducting;

@@ -433,6 +433,29 @@ TEST(FilmHeat, VanishingFilmsLeaveNoJump) {
   }
 }
 
+// Where films begin and end goes from node to node of a grid: places get warmer or cooler, none at once.
+TEST(FilmHeat, FrontsThatPassNodesLeaveNoJump) {
+  const Recess dam{0.0, 100 * pi / 180, 3 * c, 3 * c, 0.6, false};
+  const HeatSettings s = settings();
+  for (const std::vector<std::vector<Recess>>& recesses :
+       {std::vector<std::vector<Recess>>{{}, {}}, std::vector<std::vector<Recess>>{{dam}, {}}}) {
+    const FiniteJournal film = on_grid(recesses);
+    std::array<std::vector<double>, 2> last;
+    for (int k = 0; k <= 100; ++k) {
+      const double turn = (150.0 + 0.1 * k) * pi / 180;
+      const Vec2 r = 0.3 * c * Vec2(std::cos(turn), std::sin(turn));
+      const HeatBalance b = balance(film, r, s, 500);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const std::vector<double>& now = b.pads[i].viscosity;
+        // at once it was 21 to 24 %
+        for (std::size_t n = 0; k > 0 && n < now.size(); ++n)
+          ASSERT_LT(std::abs(std::log(now[n] / last[i][n])), 0.03) << k << ", cell " << n;
+        last[i] = now;
+      }
+    }
+  }
+}
+
 // Films of Reynolds form again behind a ruptured stretch: what they lack is fresh oil.
 TEST(FilmHeat, FilmsThatFormAgainTakeInFreshOil) {
   const std::vector<JournalPad> whole{{0.0, 350 * pi / 180, pi}};
