@@ -165,7 +165,6 @@ void Manifest::claim(std::string_view given, const std::string& owner) {
                    "write into another folder (-o, output.directory), or give the step "
                    "another name",
                    {}});
-  claimed_.insert(name);
   if (names_.count(name)) return;
   const bool folder = [&] {
     std::error_code ec;
@@ -181,14 +180,10 @@ void Manifest::remove(const std::function<bool(const std::string&)>& which) cons
   const std::lock_guard lock(mutex_);
   for (const std::string& name : names_) {
     const fs::path file = root_ / name;
-    if (!which(name) || !inside(name) || !regular(file)) continue;
+    if (!which(name) || !inside(name) || !regular(file) || is_read(file)) continue;
     std::error_code ec;
     fs::remove(file, ec);
   }
-}
-
-void Manifest::remove_unclaimed(const std::function<bool(const std::string&)>& which) const {
-  remove([&](const std::string& name) { return claimed_.count(name) == 0 && which(name); });
 }
 
 void Manifest::remove_of(const std::string& owner) const {

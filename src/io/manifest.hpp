@@ -34,10 +34,9 @@ class Manifest {
   /// From now on nothing is listed: of a folder that is thrown away.
   void list_nothing();
   bool lists(std::string_view name) const;
-  /// Removes the listed regular files that `which` accepts. Their names stay listed.
+  /// Removes the listed regular files that `which` accepts and this run does not read. Their names stay
+  /// listed.
   void remove(const std::function<bool(const std::string& name)>& which) const;
-  /// Removes the listed regular files that `which` accepts and nobody has claimed in this run.
-  void remove_unclaimed(const std::function<bool(const std::string& name)>& which) const;
   /// Removes the regular files that this owner has claimed. Their names stay listed.
   void remove_of(const std::string& owner) const;
 
@@ -49,7 +48,6 @@ class Manifest {
   std::filesystem::path root_;
   mutable std::mutex mutex_;  ///< of what follows
   std::unordered_set<std::string> names_;
-  std::unordered_set<std::string> claimed_;             ///< in this run
   std::vector<std::filesystem::path> inputs_;           ///< in the folder, without links
   std::unordered_map<std::string, std::string> owner_;  ///< of files written in this run
   bool older_ = false;                                  ///< results of a program that kept no list

@@ -157,10 +157,6 @@ void ResultsFolder::remove(const std::function<bool(const std::string&)>& which)
 
 void ResultsFolder::protect(const std::vector<fs::path>& inputs) { manifest_->protect(inputs); }
 
-void ResultsFolder::remove_unclaimed(const std::function<bool(const std::string&)>& which) const {
-  manifest_->remove_unclaimed(which);
-}
-
 void ResultsFolder::remove_of(const std::string& owner) const { manifest_->remove_of(owner); }
 
 void ResultsFolder::write_only(std::vector<std::string> names) {

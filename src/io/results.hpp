@@ -154,13 +154,11 @@ class ResultsFolder {
   /// @throws Error (Exit::io) when it is a symbolic link.
   std::filesystem::path subfolder(std::string_view name) const;
   /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no
-  /// run made.
+  /// run made, or that this one reads.
   void remove(const std::function<bool(const std::string& name)>& which) const;
   /// Files that this run reads: none of them is written over.
   /// @throws Error (Exit::io, E91), by what would write one.
   void protect(const std::vector<std::filesystem::path>& inputs);
-  /// Removes the files of earlier runs that `which` accepts and this one has not written.
-  void remove_unclaimed(const std::function<bool(const std::string& name)>& which) const;
   /// Removes what an owner has written in this run.
   void remove_of(const std::string& owner) const;
   void write_text(std::string_view name, std::string_view content) const;  ///< atomic

@@ -84,29 +84,31 @@ void check_space(const model::Model& model, const RunOptions& options) {
 }
 
 std::vector<std::string> steps_of_earlier_run(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "summary.json";
+  const std::filesystem::path file = folder / "run.json";
   std::error_code ec;
   if (!std::filesystem::is_regular_file(file, ec)) return {};
   std::vector<std::string> names;
   try {
-    const io::Value summary = io::parse_json(io::read_text(file), file.string());
-    if (summary.is_object() && summary.at("steps").is_object())
-      for (const auto& [name, of_step] : summary.at("steps").members())
-        names.push_back(name);
+    const io::Value run = io::parse_json(io::read_text(file), file.string());
+    if (run.is_object() && run.at("steps").is_array())
+      for (const io::Value& name : run.at("steps").items())
+        if (name.is_text()) names.push_back(name.text());
   } catch (const Error&) {
     // cut off or somebody else's: nothing is known of what that run left
   }
   return names;
 }
 
-void remove_stale_tables(const io::ResultsFolder& folder, const std::vector<std::string>& steps) {
+void remove_results_of(const io::ResultsFolder& folder, const std::vector<std::string>& steps) {
+  if (steps.empty()) return;
   const auto is_of_step = [&](const std::string& name) {
     return std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
       const std::string begin = safe_stem(step);
       return name.starts_with(begin + "_") || name.starts_with(begin + ".");
     });
   };
-  folder.remove_unclaimed([&](const std::string& name) {
+  folder.remove([&](const std::string& name) {
+    if (name == "summary.json" || name == "report.html") return true;
     const bool table = name.ends_with(".csv") || name.ends_with(".h5");
     const bool own = name.find('/') == std::string::npos;
     return table && own && is_of_step(name);
@@ -139,6 +141,9 @@ std::filesystem::path prepare_results(const model::Model& model, const RunOption
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   run["started"] = text;
+  run["steps"] = io::Value::array();
+  for (const model::Step& s : model.steps)
+    run["steps"].push(s.name);
   folder.write_json("run.json", run);
   return root;
 }

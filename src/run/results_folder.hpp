@@ -11,19 +11,19 @@ namespace whirl::run {
 ///   resolved.toml
 ///       the deck with parameters put in, includes merged, defaults explicit, tables inlined: runs
 ///       by itself
-///   run.json        program version and build, deck path, SHA-256 of resolved.toml, start time
+///   run.json        program version and build, deck path, SHA-256 of resolved.toml, start time, steps
 /// Pictures and checkpoints that earlier runs made there are removed unless the run is resumed;
 /// files no run made are left alone. A large output is announced with its size.
 /// @throws Error (Exit::io) when writing fails; (Exit::deck, E33) when the output would not fit on
 /// its disk.
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options);
 
-/// Names of the steps whose results an earlier run left in a folder; none where it left no summary.
+/// Names of the steps of the run that was started last in a folder; none where none is known of.
 std::vector<std::string> steps_of_earlier_run(const std::filesystem::path& folder);
 
-/// Removes tables and series of these steps that this run has not written: those of a deck that has
-/// changed would stand among its own.
-void remove_stale_tables(const io::ResultsFolder& folder, const std::vector<std::string>& steps);
+/// Removes what an earlier run of these steps wrote: summary, report, tables and series. They would stand
+/// beside what a run that fails or is killed leaves, and among those of a deck that has changed.
+void remove_results_of(const io::ResultsFolder& folder, const std::vector<std::string>& steps);
 
 /// @throws Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need
 /// not be there yet, or would take more than RunOptions::max_disk.

@@ -49,8 +49,8 @@ int run_deck(const model::Model& model, const run::RunOptions& options) {
   if (alone && !goes_on_in(folder, model)) earlier = run::steps_of_earlier_run(folder);
   const auto root = run::prepare_results(model, options);
   run::Job job(model, options, root);
+  run::remove_results_of(job.folder, earlier);
   run_steps(job);
-  if (!run::interrupted()) run::remove_stale_tables(job.folder, earlier);
   if (options.json)
     std::fputs(io::to_json(job.summary).c_str(), stdout);
   else if (!options.quiet)

@@ -170,6 +170,22 @@ TEST_F(ResultsFolder, TablesOfEarlierRunsGo) {
   EXPECT_EQ(read("r/r_mine.csv"), "mine");
 }
 
+// Old numbers stood beside a run that had failed, as if they were its own.
+TEST_F(ResultsFolder, RunsThatFailLeaveNoOlderNumbers) {
+  write("r/mine.csv", "mine");
+  write("d.toml", deck(response));
+  ASSERT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
+  ASSERT_TRUE(fs::exists("r/summary.json"));
+  std::string other = response;
+  other.replace(other.find("\"r\""), 3, "\"q\"");
+  write("d.toml", deck(other));
+  fs::create_directories("r/q_response.csv");  // in the way of its table
+  EXPECT_EQ(run({"d.toml", "-o", "r"}), 5) << read("log.txt");
+  for (const char* older : {"r/summary.json", "r/report.html", "r/r_response.csv"})
+    EXPECT_FALSE(fs::exists(older)) << older << read("log.txt");
+  EXPECT_EQ(read("r/mine.csv"), "mine");
+}
+
 // A law of time was moved aside for the histories of the step of its name.
 TEST_F(ResultsFolder, WhatTheDeckReadsIsNotReplaced) {
   const std::string law = "time[s],value[rpm]\n0,1000\n1,2000\n";
