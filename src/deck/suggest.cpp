@@ -35,6 +35,14 @@ std::vector<std::string> names_of(const std::vector<KeyShape>& keys) {
   return out;
 }
 
+/// outer_diameter: od. Empty of one word.
+std::string initials(const std::string& name) {
+  std::string out;
+  for (std::size_t k = 0; k < name.size(); ++k)
+    if (k == 0 || name[k - 1] == '_' || name[k - 1] == ' ') out += name[k];
+  return out.size() > 1 ? out : std::string();
+}
+
 }  // namespace
 
 ValueShape shape_of(const Value& v) {
@@ -65,6 +73,9 @@ std::string suggest(const std::string& name, const ValueShape& value,
   std::vector<KeyShape> right;
   std::copy_if(free.begin(), free.end(), std::back_inserter(right),
                [&](const KeyShape& k) { return fits(k, value); });
+  const std::string shortened = initials(name);
+  for (const KeyShape& k : right)
+    if (!shortened.empty() && k.name == shortened) return fmt::format("did you mean '{}'?", k.name);
   if (const auto near = nearest(name, names_of(right)); !near.empty())
     return fmt::format("did you mean '{}'?", near.front());
   const auto by_spelling = nearest(name, names_of(free));
