@@ -46,6 +46,41 @@ Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) co
   });
 }
 
+Eigenpairs::DecayOfFree Eigenpairs::decay_of_free(const std::vector<std::size_t>& free) {
+  const Index r = static_cast<Index>(free.size());
+  MatX P(6 * pattern.size(), r), CP = P, mass(r, r);
+  for (Index j = 0; j < r; ++j) {
+    const Pair& p = known[free[at(j)]];
+    P.col(j) = p.x.real();
+    CP.col(j) = p.Cx.real();
+    for (Index i = 0; i < r; ++i)
+      mass(i, j) = known[free[at(i)]].x.dot(p.Mx).real();
+  }
+  DecayOfFree out;
+  out.D = DenseLu<double>(mass).solve(MatX(P.transpose() * CP));
+  if (CP.isZero(0.0) || complex_shift() || !(sigma > 0.0)) return out;
+  // U += Q(sigma)^-1 (C P - K U) less its part P A stands where C P - K U = Q(sigma) P A: from the left
+  // D = sigma^2 A + sigma D A. What oscillates falls by sigma^2/(sigma^2 + w^2) each time.
+  constexpr int rounds = 12;
+  const DenseLu<double> gram(MatX(P.transpose() * P));
+  MatX U = MatX::Zero(P.rows(), r), V = U, A;
+  for (int k = 0; k < rounds; ++k) {
+    for (Index j = 0; j < r; ++j) {
+      multiply(m->K, U.col(j), t_);
+      for (const Index u : unknown)
+        V(u, j) = CP(u, j) - t_(u);
+      real->solve(V.col(j));
+    }
+    A = gram.solve(MatX(P.transpose() * V));
+    U += V - P * A;
+  }
+  const MatX rest = MatX::Identity(r, r) - sigma * A;
+  const MatX D = sigma * sigma *
+                 DenseLu<double>(MatX(rest.transpose())).solve(MatX(A.transpose())).transpose();
+  if (!D.allFinite()) return out;
+  return {D, std::move(U)};
+}
+
 void Eigenpairs::add_companions() {
   double_zeros = 0;
   slow_beside_zeros = false;
@@ -55,20 +90,14 @@ void Eigenpairs::add_companions() {
     if (known[i].rigid) free.push_back(i);
   const Index r = static_cast<Index>(free.size());
   if (r == 0 || first_order) return;
-  MatX mass(r, r), drag(r, r);
   double rounding = 0.0;
-  for (Index i = 0; i < r; ++i) {
-    Pair& p = known[free[at(i)]];
-    for (Index j = 0; j < r; ++j) {
-      const Pair& q = known[free[at(j)]];
-      mass(i, j) = p.x.dot(q.Mx).real();
-      drag(i, j) = p.x.dot(q.Cx).real();
-    }
-    rounding = std::max(rounding,
-                        polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
+  for (const std::size_t i : free) {
+    const double mass = std::max(std::abs(known[i].x.dot(known[i].Mx)), 1e-300);
+    rounding = std::max(rounding, polisher.rounding_of_stiffness(known[i]) / mass);
   }
   zero_rounding = 10.0 * std::sqrt(rounding);
-  const DenseEigenpairs eig = eigenpairs(MatX(-DenseLu<double>(mass).solve(drag)));
+  const DecayOfFree decay = decay_of_free(free);
+  const DenseEigenpairs eig = eigenpairs(MatX(-decay.D));
   Index slow_found = count_slow_companions(free), zeros = 0;
   for (Index j = 0; j < r; ++j) {
     const Complex rate = eig.values(j);
@@ -83,19 +112,26 @@ void Eigenpairs::add_companions() {
     p.lambda = rate.imag() == 0.0 ? Complex(rate.real()) : rate;
     p.x = VecXc::Zero(6 * pattern.size());
     for (Index i = 0; i < r; ++i) {
-      const Complex part = eig.vectors(i, j);
-      p.x += (rate.imag() == 0.0 ? Complex(part.real()) : part) * known[free[at(i)]].x;
+      const Complex part =
+          rate.imag() == 0.0 ? Complex(eig.vectors(i, j).real()) : eig.vectors(i, j);
+      p.x += part * known[free[at(i)]].x;
+      if (decay.follows.size() > 0)
+        p.x += part * p.lambda * (p.lambda / sigma - 1.0) * decay.follows.col(i);
     }
-    // The projection is an estimate only (the left vector is another one); what does not polish is
-    // left to the count.
+    // of first order in the rate; where rounding of K keeps Newton's method off it, that is what is known
     constexpr double estimate = 0.9, apart = 1e-3;
     if (slow_found > 0 && spanned(p, known_near(p, estimate, false))) {
       --slow_found;  // the search has it
       continue;
     }
-    if (!polisher.evaluate(p) || !polisher.polish(p, opt.tolerance, false)) continue;
-    if (std::abs(p.lambda - rate) > estimate * std::abs(rate)) continue;
+    Pair first = p;
+    const bool polished = polisher.evaluate(p) && polisher.polish(p, opt.tolerance, false);
+    if (!polished || std::abs(p.lambda - rate) > estimate * std::abs(rate)) p = std::move(first);
+    if (!polisher.evaluate(p)) continue;
     polisher.assess(p);
+    if (!(p.residual < unproved)) continue;
+    // rounding of K moves it as lambda (lambda - rate) = zero_rounding^2, up to the factor that stands there
+    p.uncertainty = std::max(p.uncertainty, 0.01 * zero_rounding * zero_rounding / std::abs(rate));
     make_real(p);
     const auto alike = known_near(p, apart, false);  // several may die away at one rate
     if (!spanned(p, alike)) known.push_back(std::move(p));

@@ -36,6 +36,14 @@ struct Eigenpairs : ShiftedOperator {
   /// the motion, else the rate at which it dies away (or grows), a root of its own that shares the
   /// vector but for a small twist and is easily taken for the first. Adds those of the second kind.
   void add_companions();
+  /// Near zero x = P a moves, P the free motions, with lambda^2 a + lambda D a = 0, to first order in lambda.
+  /// D is drag over mass by the left vectors of K's zero roots, which are not P where what a motion's
+  /// rate displaces resists or drives it (the drag of films, whose journals shift with the speed).
+  struct DecayOfFree {
+    MatX D;
+    MatX follows;  ///< x = P a + lambda (lambda/sigma - 1) follows a; empty: not known
+  };
+  DecayOfFree decay_of_free(const std::vector<std::size_t>& free);
   /// Slow real roots among the known ones whose vectors are free motions: companions that the
   /// search has told from zero.
   Index count_slow_companions(const std::vector<std::size_t>& free) const;

@@ -396,6 +396,56 @@ TEST(QuadraticModes, DraggedRigidMotionHasARealRoot) {
   }
 }
 
+// A spin whose rate pushes the shaft aside, which turns it in turn, as journals do whose films carry more the
+// faster they turn: what it decays by is c - t'K^-1 f, not c; down to where rounding of stiffness hides it.
+TEST(QuadraticModes, ASpinThatMovesTheShaftAsideDecaysByWhatIsLeft) {
+  constexpr Index nodes = 20;
+  constexpr double inertia = 0.2, torsion = 1e7, k = 2e7, cross = 3e7, mass = 30.0;
+  const BlockPattern p(nodes, chain(nodes));
+  Mask a(6 * nodes, 0);
+  for (Index i = 0; i < nodes; ++i)
+    a[static_cast<std::size_t>(6 * i + 3)] = 1;
+  a[1] = a[2] = 1;
+  Mat2 K;
+  K << k, cross, -cross, k;
+  const Vec2 f(0.7, -1.3);
+  for (double size = 1e-5; size < 1.0; size *= 1.3)
+    for (const double left : {0.05, 0.3, 1.0, 2.5, -0.4}) {
+      const double rate = left < 0.0 ? size : -size, drag = -rate * nodes * inertia / left;
+      SCOPED_TRACE(testing::Message() << rate << ", what is left of it " << left);
+      MCK m(p);
+      for (Index i = 0; i < nodes; ++i) {
+        m.M.block(p.diagonal(i))(3, 3) = inertia;
+        if (i == 0) continue;
+        m.K.block(p.diagonal(i))(3, 3) += torsion;
+        m.K.block(p.diagonal(i - 1))(3, 3) += torsion;
+        m.K.block(p.slot(i, i - 1))(3, 3) = m.K.block(p.slot(i - 1, i))(3, 3) = -torsion;
+      }
+      const Index d = p.diagonal(0);
+      m.M.block(d).block<2, 2>(1, 1) = mass * Mat2::Identity();
+      m.K.block(d).block<2, 2>(1, 1) = K;
+      m.C.block(d).block<2, 2>(1, 1) = 2e3 * Mat2::Identity();
+      m.C.block(d)(3, 3) = drag;
+      m.C.block(d).block<2, 1>(1, 3) = drag * f;
+      const Vec2 moved = K.inverse() * f;
+      m.K.block(d).block<1, 2>(3, 1) = (1.0 - left) * moved.transpose() / moved.squaredNorm();
+      ModeOptions o;
+      o.count = 3;
+      o.certify = true;
+      o.maybe_free = MatX::Zero(6 * nodes, 1);
+      for (Index i = 0; i < nodes; ++i)
+        o.maybe_free(6 * i + 3, 0) = 1.0;
+      ModeSolver solver(p, a, o);
+      double nearest = infinity;
+      for (const Mode& mode : solver.solve(m))
+        nearest = std::min(nearest, std::abs(mode.lambda - rate));
+      EXPECT_TRUE(solver.certificate().complete());
+      constexpr double hidden =
+          1e-2;  // ten times the root of what rounding of 1e7 makes of 20 x 0.2
+      EXPECT_LT(nearest, std::abs(rate) > hidden ? 2e-2 * std::abs(rate) : hidden);
+    }
+}
+
 TEST(QuadraticModes, CountIsCompleteBelowAFrequency) {
   const Index n = 60;
   const BlockPattern p(n + 1, chain(n + 1));
