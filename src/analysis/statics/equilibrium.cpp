@@ -616,6 +616,16 @@ std::string obstacle_to_turning(const SteadySystem& running) {
 Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
   WHIRL_EXPECTS(std::isfinite(Omega));
   WHIRL_EXPECTS(!start || start->q.size() == running_.system().size());
+  if (!start || running_.system().keepers().empty()) return solve_from(Omega, start);
+  try {
+    return solve_from(Omega, start);
+  } catch (const Error&) {
+    // temperatures of another speed may hold what these here do not, or lead astray
+    return solve_from(Omega, nullptr);
+  }
+}
+
+Equilibrium EquilibriumSolver::solve_from(double Omega, const system::State* start) {
   auto out = try_solve(Omega, start);
   if (out) {
     balance_kept(Omega, *out);
@@ -627,11 +637,15 @@ Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
     throw run_error("E75", why_ + "; " + contradiction,
                     "give lines that are joined rigidly the same 'rotating' and speed_ratio, or a "
                     "joint that lets one turn in the other");
-  throw run_error(singular ? "E75" : "E76", (singular ? "" : "no equilibrium found: ") + why_,
-                  singular ? "add a support in that direction, or hold it rigidly; at a high load: "
-                             "the structure is at a limit point or buckles"
-                           : "the load may lie beyond a limit point (try the buckling analysis), "
-                             "or a bearing beyond its capacity");
+  if (singular)
+    throw run_error("E75", why_,
+                    "add a support in that direction, or hold it rigidly; at a high load: "
+                    "the structure is at a limit point or buckles");
+  throw NoEquilibrium(
+      run_error("E76", "no equilibrium found: " + why_,
+                "the load may lie beyond a limit point (try the buckling analysis), "
+                "or a bearing beyond its capacity"),
+      Omega);
 }
 
 }  // namespace whirl::analysis

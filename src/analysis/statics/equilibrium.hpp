@@ -11,6 +11,7 @@
 // (SteadyRotation::axially_free): its first node is held there.
 #pragma once
 #include <analysis/steady_rotation.hpp>
+#include <core/error.hpp>
 #include <la/direct.hpp>
 #include <memory>
 #include <optional>
@@ -49,13 +50,21 @@ struct Equilibrium {
       0;  ///< what elements keep (system::Frames::kept) still changes by, the largest
 };
 
+/// At this speed, rad/s, none was found.
+class NoEquilibrium : public Error {
+ public:
+  NoEquilibrium(Error e, double speed) : Error(std::move(e)), Omega(speed) {}
+  double Omega;
+};
+
 class EquilibriumSolver {
  public:
   EquilibriumSolver(SteadySystem& running, EquilibriumOptions options = {});
 
-  /// From `start` (null: the reference configuration).
+  /// From `start` (null: the reference configuration); where films are hot and none is found from there,
+  /// from the reference configuration.
   /// @throws Error E75 nothing resists a motion (node and direction named), or the structure is at
-  /// a limit point; E76 no equilibrium found (load factor reached).
+  /// a limit point; NoEquilibrium E76 (load factor reached).
   Equilibrium solve(double Omega, const system::State* start = nullptr);
   /// As a status: nullopt when there is none, why() tells.
   std::optional<Equilibrium> try_solve(double Omega, const system::State* start = nullptr);
@@ -122,8 +131,10 @@ class EquilibriumSolver {
   /// correction itself. most: the part tried first.
   double step_carefully(double Omega, const system::State& s, double size, double most, Step kind);
   std::string no_convergence() const;
+  /// As solve(), from there alone.
+  Equilibrium solve_from(double Omega, const system::State* start);
   /// Settles what elements keep, and the equilibrium with it.
-  /// @throws Error E76 when they do not settle.
+  /// @throws NoEquilibrium when they do not settle.
   void balance_kept(double Omega, Equilibrium& out);
   /// Loads in steps from the unloaded state at time t, doubled after an easy step, halved after a
   /// failure.
