@@ -570,6 +570,101 @@ report = false
   }
 }
 
+namespace {
+
+/// A disk of this mass between two equal journals of 50 mm; nothing drives it.
+std::string between_journals(double mass, const std::string& film, const std::string& step) {
+  std::string text = fmt::format(R"(format = 1
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["l", 200, 50, 3], ["r", 200, 50, 3]]
+[[disk]]
+name = "d"
+at = "l:end"
+mass = "{0} kg"
+Ip = "{1} kg.m^2"
+Id = "{2} kg.m^2"
+[[bearing]]
+name = "t"
+at = "l:start"
+type = "linear"
+kxx = "1e8 N/m"
+cxx = "1e4 N.s/m"
+)",
+                                 mass, 0.005 * mass, 0.0026 * mass);
+  for (const auto& [name, at] : {std::pair{"A", "l:start"}, std::pair{"B", "r:end"}})
+    text += fmt::format(
+        "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ntype = \"journal\"\ndiameter = \"50 mm\"\n{}",
+        name, at, film);
+  return text + step + "[output]\nreport = false\n";
+}
+
+}  // namespace
+
+// Temperatures of 7090 rpm lead astray at 8363; each speed by itself was found.
+TEST(HotFilms, SettleFromThoseOfAnotherSpeed) {
+  const DeckRun d(between_journals(93.56,
+                                   R"(length = "30.4586 mm"
+clearance = "55.9288 um"
+iso_vg = 68
+shape = "two_grooves"
+groove_at = "179 deg"
+axial_grid = 6
+heat = { supply_temperature = "47 degC" }
+)",
+                                   R"([[step]]
+name = "s"
+type = "campbell"
+speed = { values = ["7090.909 rpm", "8363.636 rpm"] }
+modes = 4
+)"));
+  EXPECT_EQ(d.exit, 0) << d.log;
+}
+
+// What films take from a spin that nothing drives dies away by some 1e-3 1/s, hardly more than rounding of the
+// stiffness leaves of a free motion: the list is complete.
+TEST(HotFilms, TheSpinThatTheyBrakeIsCounted) {
+  const DeckRun d(between_journals(36.5,
+                                   R"(length = "41.1357 mm"
+clearance = "67.3949 um"
+iso_vg = 22
+shape = "pressure_dam"
+dam_arc = "112 deg"
+dam_depth = "86 um"
+dam_width = "22.6 mm"
+supply_pressure = "1.17 bar"
+heat = { supply_temperature = "52 degC", feed = "leading_edge" }
+)",
+                                   R"([[step]]
+name = "s"
+type = "campbell"
+speed = { start = "2000 rpm", stop = "4000 rpm", points = 3 }
+modes = 4
+)"));
+  EXPECT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("INCOMPLETE")) << d.log;
+}
+
+// In a diagram a journal beyond its capacity is told of as in statics.
+TEST(HotFilms, WhatTheyCarryIsToldInEveryStep) {
+  const std::string film =
+      "length = \"25 mm\"\nclearance = \"60 um\"\niso_vg = 22\nshape = \"two_grooves\"\ngroove_at "
+      "= "
+      "\"-90 deg\"\ntemperature = \"50 degC\"\n";
+  for (const std::string kind :
+       {"campbell\"\nspeed = { start = \"800 rpm\", stop = \"900 rpm\", points = 2 }",
+        "static\"\nspeed = \"800 rpm\""}) {
+    const DeckRun d(
+        between_journals(1500.0, film, "[[step]]\nname = \"s\"\ntype = \"" + kind + "\n"));
+    EXPECT_EQ(d.exit, 4) << d.log;
+    EXPECT_TRUE(d.says("the supports carry 0.") && d.says("bearing 'A' carries") &&
+                d.says(" N at eccentricity "))
+        << d.log;
+    EXPECT_EQ(d.says("at 800 rpm: "), kind.starts_with("campbell")) << d.log;
+  }
+}
+
 // Too few looks are said.
 TEST(HotFilms, TemperaturesThatJumpAreSaid) {
   const std::string oil = grooved +
