@@ -90,9 +90,12 @@ class PadHeat {
 
   /// Heat capacity of what the groove gives and of what leaves at the end, W/K.
   double inflow() const { return carried_.row(0).cwiseMax(0.0).sum() + groove_.sum(); }
-  double outflow() const { return std::max(0.0, carried_.row(N_).sum()); }
-  /// And of what films that form behind the first one take in at the sides.
-  double taken_in() const { return -side_.cwiseMin(0.0).sum(); }
+  double outflow() const { return carried_.row(N_).cwiseMax(0.0).sum(); }
+  /// And of what films that form behind the first one take in at the sides, and what the pressure of a groove
+  /// drives back into the end of the pad.
+  double taken_in() const {
+    return -side_.cwiseMin(0.0).sum() - carried_.row(N_).cwiseMin(0.0).sum();
+  }
   double loss() const { return heat_ + gaps_; }
   /// Of the oil that leaves at the end of the pad.
   Affine outlet() const {
@@ -103,7 +106,9 @@ class PadHeat {
       sum += m * cell(N_ - 1, j);
       flow += m;
     }
-    return sum / flow;
+    if (flow > 0.0) return sum / flow;
+    sum[of_sides] = 1.0;  // a groove that fills the end of the pad
+    return sum;
   }
   /// Heat into the journal, W.
   Affine into_journal() const {
@@ -328,7 +333,9 @@ void PadHeat::add_flows(Band& a) {
     const double in = carried_(0, j);
     a(first, first) -= std::min(in, 0.0);
     x_(first, of_inlet) += std::max(in, 0.0);
-    a(last, last) += carried_(N_, j);  // what comes back at the end is as warm as it is there
+    const double out = carried_(N_, j);
+    a(last, last) += std::max(out, 0.0);
+    x_(last, of_sides) -= std::min(out, 0.0);
   }
 }
 
@@ -430,7 +437,7 @@ PadTemperatures PadHeat::temperatures(const Affine& of) const {
     }
   }
   for (Index j = 0; j < J_; ++j) {
-    out.carried += carried_(N_, j) * T[place(N_ - 1, j)];
+    out.carried += carried_(N_, j) * (carried_(N_, j) > 0.0 ? T[place(N_ - 1, j)] : of[of_sides]);
     out.carried -= carried_(0, j) * (carried_(0, j) > 0.0 ? out.in : T[place(0, j)]);
   }
   out.pad = M_ > 0 ? mean : of[of_surroundings];

@@ -29,7 +29,8 @@
 // Oil is kept count of: in a ruptured stretch flows what the film lets go, which wets its share of the
 // width, conducts and is warmed there. Films of Reynolds form wherever they want to; what one lacks there
 // comes in from the groove where it is the first of its pad (it belongs to Q_in), at the sides where it is
-// a later one: fresh, or of the bath (as warm as the oil of the groove where T_b is not known). Their drag
+// a later one: fresh, or of the bath (as warm as the oil of the groove where T_b is not known). Of that is
+// also what the pressure of a groove drives back into the end of a pad. Their drag
 // counts ruptured gaps as full: what is lost there beyond the streams warms oil that comes from the sides
 // and leaves again (part of heat, carried and to_oil, of no temperature here).
 // A film on a grid (grid_film.hpp): flow, loss and what is conducted across are the means over the length

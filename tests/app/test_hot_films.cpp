@@ -572,13 +572,14 @@ report = false
 
 namespace {
 
-/// A disk of this mass between two equal journals of 50 mm; nothing drives it.
-std::string between_journals(double mass, const std::string& film, const std::string& step) {
+/// A disk of this mass between two equal journals of this diameter, mm; nothing drives it.
+std::string between_journals(double mass, const std::string& film, const std::string& step,
+                             double diameter = 50) {
   std::string text = fmt::format(R"(format = 1
 [shaft]
 material = "steel"
 columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["l", 200, 50, 3], ["r", 200, 50, 3]]
+rows = [["l", {3}, {4}, 3], ["r", {3}, {4}, 3]]
 [[disk]]
 name = "d"
 at = "l:end"
@@ -592,11 +593,12 @@ type = "linear"
 kxx = "1e8 N/m"
 cxx = "1e4 N.s/m"
 )",
-                                 mass, 0.005 * mass, 0.0026 * mass);
+                                 mass, 2e-6 * mass * diameter * diameter,
+                                 1.04e-6 * mass * diameter * diameter, 4 * diameter, diameter);
   for (const auto& [name, at] : {std::pair{"A", "l:start"}, std::pair{"B", "r:end"}})
     text += fmt::format(
-        "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ntype = \"journal\"\ndiameter = \"50 mm\"\n{}",
-        name, at, film);
+        "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ntype = \"journal\"\ndiameter = \"{} mm\"\n{}",
+        name, at, diameter, film);
   return text + step + "[output]\nreport = false\n";
 }
 
@@ -620,6 +622,28 @@ speed = { values = ["7090.909 rpm", "8363.636 rpm"] }
 modes = 4
 )"));
   EXPECT_EQ(d.exit, 0) << d.log;
+}
+
+// Pressure of the groove behind it drives oil back into the end of a pad: oil of the groove. As warm as where it
+// came to, what next to nothing flows past grew hot, and temperatures did not settle.
+TEST(HotFilms, SettleWhereAGrooveDrivesOilBack) {
+  const DeckRun d(between_journals(4690.6,
+                                   R"(length = "122.151 mm"
+clearance = "216.944 um"
+iso_vg = 22
+shape = "two_grooves"
+groove_at = "-116 deg"
+supply_pressure = "1.86 bar"
+heat = { supply_temperature = "40 degC" }
+)",
+                                   R"([[step]]
+name = "s"
+type = "static"
+speeds = { start = "480 rpm", stop = "560 rpm", points = 5 }
+)",
+                                   200));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("equilibria at 5 speeds, ")) << d.log;
 }
 
 // What films take from a spin that nothing drives dies away by some 1e-3 1/s, hardly more than rounding of the
