@@ -30,6 +30,7 @@ std::string joined(const std::vector<std::string>& names, std::size_t most) {
 
 std::vector<std::string> names_of(const std::vector<KeyShape>& keys) {
   std::vector<std::string> out;
+  out.reserve(keys.size());
   for (const auto& k : keys)
     out.push_back(k.name);
   return out;
