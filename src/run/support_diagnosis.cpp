@@ -44,7 +44,10 @@ struct Carried {
 Carried find_carried(const Job& job, const analysis::SteadySystem& running,
                      const StepState& start) {
   analysis::SteadySystem part(job.system(), running.running());
-  analysis::EquilibriumSolver solver(part);
+  analysis::EquilibriumOptions options;
+  options.max_load_steps =
+      10;  // where the last equilibrium leads nowhere a few from none on will do
+  analysis::EquilibriumSolver solver(part, options);
   Carried out;
   while (out.not_carried - out.share > 1.0 / 256) {
     const double factor = 0.5 * (out.share + out.not_carried);
